@@ -29,8 +29,9 @@ double time_of(std::size_t count, Work&& work) {
 }
 
 double row_seconds(const Fft& fft, std::size_t length, std::size_t rows) {
-    FftBuffer buffer(kRows * Fft::row_floats(length));
-    return time_of((rows + kRows - 1) / kRows, [&] { fft.run(buffer); });
+    FftBuffer from(kRows * Fft::row_floats(length));
+    FftBuffer to(from.num_floats());
+    return time_of((rows + kRows - 1) / kRows, [&] { fft.run(from, to); });
 }
 
 std::array<std::size_t, 2> padded_size(const nlos::WallGrid& grid) {

@@ -76,25 +76,25 @@ void FftBuffer::Free::operator()(void* memory) const {
 }
 
 Fft Fft::real_to_complex(std::size_t length, std::size_t count) {
-    FftBuffer buffer(row_floats(length) * count);
-    float* data = buffer.data();
+    FftBuffer in(row_floats(length) * count);
+    FftBuffer out(row_floats(length) * count);
     const fftwf_iodim row = dimension(length, 1, 1);
     const fftwf_iodim rows = dimension(count, row_floats(length), row_floats(length) / 2);
     const std::lock_guard lock(planner_mutex);
-    return Fft(
-        Kind::RealToComplex,
-        checked(fftwf_plan_guru_dft_r2c(1, &row, 1, &rows, data, as_fftw(data), FFTW_ESTIMATE)));
+    return Fft(Kind::RealToComplex,
+               checked(fftwf_plan_guru_dft_r2c(
+                   1, &row, 1, &rows, in.data(), as_fftw(out.data()), FFTW_ESTIMATE)));
 }
 
 Fft Fft::complex_to_real(std::size_t length, std::size_t count) {
-    FftBuffer buffer(row_floats(length) * count);
-    float* data = buffer.data();
+    FftBuffer in(row_floats(length) * count);
+    FftBuffer out(row_floats(length) * count);
     const fftwf_iodim row = dimension(length, 1, 1);
     const fftwf_iodim rows = dimension(count, row_floats(length) / 2, row_floats(length));
     const std::lock_guard lock(planner_mutex);
-    return Fft(
-        Kind::ComplexToReal,
-        checked(fftwf_plan_guru_dft_c2r(1, &row, 1, &rows, as_fftw(data), data, FFTW_ESTIMATE)));
+    return Fft(Kind::ComplexToReal,
+               checked(fftwf_plan_guru_dft_c2r(
+                   1, &row, 1, &rows, as_fftw(in.data()), out.data(), FFTW_ESTIMATE)));
 }
 
 Fft Fft::complex_batch(std::size_t length,

@@ -57,8 +57,9 @@ class Fft {
  public:
     enum class Direction { Forward, Inverse };
 
-    /// `count` rows of `length` real numbers become rows of `length / 2 + 1` complex numbers, in
-    /// place; length even.
+    /// `count` rows of `length` real numbers become rows of `length / 2 + 1` complex numbers in
+    /// another buffer, and back; length even. FFTW takes a multiple of the time to plan those in
+    /// place. Complex rows are not kept.
     static Fft real_to_complex(std::size_t length, std::size_t count);
     static Fft complex_to_real(std::size_t length, std::size_t count);
 
@@ -80,6 +81,7 @@ class Fft {
                              const Layout& to,
                              Direction direction);
 
+    /// In place, as only complex transforms are.
     void run(FftBuffer& buffer) const { run(buffer, buffer); }
     void run(FftBuffer& from, FftBuffer& to) const;
 

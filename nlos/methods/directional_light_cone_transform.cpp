@@ -238,7 +238,7 @@ double directional_light_cone_transform_bytes(const MethodInput& input,
         static_cast<double>(largest_slab(cone.num_frequencies(), num_slabs) * cone.plane_stride());
     const double volumes = 16.0 * columns * static_cast<double>(input.axes.z_m.size());
     return spectra + volumes +
-           (66.0 * padded + 64.0 * static_cast<double>(cone.length)) * core::thread_count();
+           (66.0 * padded + 128.0 * static_cast<double>(cone.length)) * core::thread_count();
 }
 
 }  // namespace nlos

@@ -80,6 +80,7 @@ class RangeTransform {
     void fill(std::size_t begin, std::size_t end, ComplexF* out) const {
         const std::size_t row_floats = Fft::row_floats(grids_.length);
         FftBuffer rows(kColumnsPerBatch * row_floats);
+        FftBuffer spectra(rows.num_floats());
         std::vector<double> first_range_m;
         std::vector<double> bin_weights;
         for (std::size_t column = begin; column < end; ++column) {
@@ -97,16 +98,16 @@ class RangeTransform {
                                return static_cast<float>(weight * static_cast<double>(value));
                            });
         }
-        forward_.run(rows);
+        forward_.run(rows, spectra);
         for (std::size_t i = 0; i < end - begin; ++i) {
-            ComplexF* const row = rows.complex() + i * (row_floats / 2);
+            ComplexF* const row = spectra.complex() + i * (row_floats / 2);
             const double turns = (first_range_m[i] - grids_.center_m) / grids_.period_m();
             for (std::size_t f = 0; f < grids_.num_frequencies(); ++f) {
                 const UnitPhasor phase = unit_phasor(-static_cast<double>(f) * turns);
                 row[f] = multiply(row[f], {-derivative_[f] * phase.im, derivative_[f] * phase.re});
             }
         }
-        const PlaneRows copies{rows.complex(),
+        const PlaneRows copies{spectra.complex(),
                                row_floats / 2,
                                end - begin,
                                out + begin,

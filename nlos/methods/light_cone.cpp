@@ -220,9 +220,10 @@ void fill_cone_spectrum(const MethodInput& input,
     parallel_blocks_with_progress(
         num_columns, kColumnsPerBlock, span, [&](std::size_t begin, std::size_t end) {
             FftBuffer rows(kColumnsPerBlock * row_floats);
+            FftBuffer spectra(rows.num_floats());
             data.fill(begin, starts(rows.data(), row_floats, end - begin));
-            forward.run(rows);
-            spectrum_rows(rows, cone, begin, end, spectrum, slab).copy_to_planes();
+            forward.run(rows, spectra);
+            spectrum_rows(spectra, cone, begin, end, spectrum, slab).copy_to_planes();
         });
 }
 
@@ -239,9 +240,10 @@ void add_spectrum_to_depth(const MethodInput& input,
     const ConservativeResampling to_depth = squared_range_to_depth(input, cone, BinSpread::Even);
     parallel_blocks_with_progress(
         num_columns, kColumnsPerBlock, span, [&](std::size_t begin, std::size_t end) {
-            FftBuffer rows(kColumnsPerBlock * row_floats);
-            spectrum_rows(rows, cone, begin, end, spectrum, slab).copy_to_rows();
-            inverse.run(rows);
+            FftBuffer spectra(kColumnsPerBlock * row_floats);
+            FftBuffer rows(spectra.num_floats());
+            spectrum_rows(spectra, cone, begin, end, spectrum, slab).copy_to_rows();
+            inverse.run(spectra, rows);
             std::vector<float> shares((end - begin) * nz);
             const auto inputs = starts<const float>(rows.data(), row_floats, end - begin);
             to_depth.apply(inputs, starts(shares.data(), nz, end - begin));

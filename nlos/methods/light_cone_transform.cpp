@@ -108,7 +108,7 @@ double light_cone_transform_bytes(const MethodInput& input,
     const auto frequencies = static_cast<double>(largest_slab(cone.num_frequencies(), num_slabs));
     const double spectrum = 8.0 * frequencies * static_cast<double>(cone.plane_stride());
     const double volume = 4.0 * columns * static_cast<double>(input.axes.z_m.size());
-    const double per_thread = 30.0 * padded + 64.0 * static_cast<double>(cone.length + 2);
+    const double per_thread = 30.0 * padded + 128.0 * static_cast<double>(cone.length + 2);
     return spectrum + volume + per_thread * core::thread_count() + 16.0 * padded;
 }
 

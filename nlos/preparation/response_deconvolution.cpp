@@ -31,9 +31,10 @@ ResponseDeconvolution::ResponseDeconvolution(const core::ResponseFilter& filter,
         const std::ptrdiff_t bin = ((delay % length) + length) % length;
         response.data()[bin] += static_cast<float>(filter.weights[k]);
     }
-    forward_.run(response);
+    FftBuffer spectrum(response.num_floats());
+    forward_.run(response, spectrum);
     for (std::size_t i = 0; i < length_ / 2 + 1; ++i) {
-        const std::complex<double> passed(response.complex()[i]);
+        const std::complex<double> passed(spectrum.complex()[i]);
         const std::complex<double> factor =
             std::conj(passed) / (std::norm(passed) + floor * floor) / static_cast<double>(length_);
         factors_.emplace_back(factor);
@@ -42,10 +43,11 @@ ResponseDeconvolution::ResponseDeconvolution(const core::ResponseFilter& filter,
 
 void ResponseDeconvolution::apply(std::span<double> histogram) const {
     FftBuffer buffer(Fft::row_floats(length_));
+    FftBuffer spectrum(buffer.num_floats());
     std::copy(histogram.begin(), histogram.end(), buffer.data());
-    forward_.run(buffer);
-    for (std::size_t i = 0; i < factors_.size(); ++i) buffer.complex()[i] *= factors_[i];
-    inverse_.run(buffer);
+    forward_.run(buffer, spectrum);
+    for (std::size_t i = 0; i < factors_.size(); ++i) spectrum.complex()[i] *= factors_[i];
+    inverse_.run(spectrum, buffer);
     std::copy_n(buffer.data(), num_bins_, histogram.begin());
 }
 

@@ -86,6 +86,7 @@ void ConeConvolution::to_frequencies(const ConeField& field, Planes& planes) con
     const std::size_t num_v = cone_.num_v();
     core::parallel_for(cone_.nx, [&](std::size_t ix) {
         FftBuffer rows(kRowsPerBatch * row_floats);
+        FftBuffer spectra(rows.num_floats());
         const float* plane = field.data() + ix * num_v * cone_.ny;
         for (std::size_t first = 0; first < cone_.ny; first += kRowsPerBatch) {
             const std::size_t lanes = std::min(kRowsPerBatch, cone_.ny - first);
@@ -95,8 +96,8 @@ void ConeConvolution::to_frequencies(const ConeField& field, Planes& planes) con
                     rows.data()[lane * row_floats + v] = plane[v * cone_.ny + first + lane];
                 }
             }
-            forward_.run(rows);
-            rows_of(rows, lanes, planes, ix * cone_.ny + first).copy_to_planes();
+            forward_.run(rows, spectra);
+            rows_of(spectra, lanes, planes, ix * cone_.ny + first).copy_to_planes();
         }
     });
 }
@@ -107,11 +108,12 @@ void ConeConvolution::from_frequencies(Planes& planes, ConeField& field) const {
     const float scale = 1.0F / static_cast<float>(cone_.px * cone_.py * cone_.length);
     core::parallel_for(cone_.nx, [&](std::size_t ix) {
         FftBuffer rows(kRowsPerBatch * row_floats);
+        FftBuffer spectra(rows.num_floats());
         float* plane = field.data() + ix * num_v * cone_.ny;
         for (std::size_t first = 0; first < cone_.ny; first += kRowsPerBatch) {
             const std::size_t lanes = std::min(kRowsPerBatch, cone_.ny - first);
-            rows_of(rows, lanes, planes, ix * cone_.ny + first).copy_to_rows();
-            inverse_.run(rows);
+            rows_of(spectra, lanes, planes, ix * cone_.ny + first).copy_to_rows();
+            inverse_.run(spectra, rows);
             for (std::size_t v = 0; v < num_v; ++v) {
                 for (std::size_t lane = 0; lane < lanes; ++lane) {
                     plane[v * cone_.ny + first + lane] = scale * rows.data()[lane * row_floats + v];

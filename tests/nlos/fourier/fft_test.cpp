@@ -42,8 +42,9 @@ TEST(Fft, RealTransformAndItsInverseMultiplyByTheLength) {
             buffer.data()[row * row_floats + i] = value(row, i);
         }
     }
-    Fft::real_to_complex(kLength, kCount).run(buffer);
-    Fft::complex_to_real(kLength, kCount).run(buffer);
+    FftBuffer spectra(buffer.num_floats());
+    Fft::real_to_complex(kLength, kCount).run(buffer, spectra);
+    Fft::complex_to_real(kLength, kCount).run(spectra, buffer);
     for (std::size_t row = 0; row < kCount; ++row) {
         for (std::size_t i = 0; i < kLength; ++i) {
             EXPECT_NEAR(buffer.data()[row * row_floats + i], kLength * value(row, i), 1e-4);
