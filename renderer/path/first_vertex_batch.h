@@ -61,7 +61,7 @@ class FirstVertexBatch {
     /// `count` draws from the hidden area, made batch by batch: the points of a randomly shifted
     /// lattice, core::lattice_point().
     struct AreaDraws {
-        AreaDraws(int count, core::Rng& rng) : count(count) {
+        AreaDraws(int num_draws, core::Rng& rng) : count(num_draws) {
             shift.x() = rng.uniform();
             shift.y() = rng.uniform();
         }
