@@ -32,7 +32,7 @@ nlos::ImagePanel rows_panel(const calib::FitResult& result,
                      result.axis.bin_begin_m(static_cast<double>(bins[1]))};
     panel.x_label = "path length [m]";
     panel.y_label = "pair";
-    panel.scale = nlos::AxisScale::Free;
+    panel.aspect = nlos::AspectRatio::Free;
     return panel;
 }
 

@@ -187,7 +187,7 @@ nlos::ImagePanel rows_panel(const std::string& title,
     panel.x_label = "path length [m]";
     panel.y_label = "zone";
     panel.value_label = "counts";
-    panel.scale = nlos::AxisScale::Free;
+    panel.aspect = nlos::AspectRatio::Free;
     return panel;
 }
 

@@ -83,7 +83,7 @@ ImagePanel streak_panel_of(const Recipe& recipe, const ItemArray& histograms) {
     panel.y_label = "path length [m]";
     panel.x_direction = nlos::AxisDirection::Reversed;
     panel.y_direction = nlos::AxisDirection::Reversed;
-    panel.scale = nlos::AxisScale::Free;
+    panel.aspect = nlos::AspectRatio::Free;
     panel.value_scale = nlos::ValueScale::Gamma;
     panel.value_label = recipe.detector ? "counts per bin" : nlos::kRenderedRadiancePerBin;
     return panel;

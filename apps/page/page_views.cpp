@@ -3,8 +3,11 @@
 
 #include "apps/dataset/mesh_library.h"
 #include "apps/scene_truth.h"
+#include "nlos/canvas/colour_map.h"
 #include "nlos/preparation/wall_frame.h"
 #include "renderer/scene/load_geometry.h"
+
+#include <fmt/core.h>
 
 #include <filesystem>
 
@@ -81,10 +84,32 @@ core::Json mesh_json(const TruthView& truth, const PageWall& wall, PageArrays& a
             {"triangles", arrays.add(corners)}};
 }
 
+std::string hex_text(const nlos::Colour& colour) {
+    return fmt::format("{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
+}
+
+/// The colours of maps, under the names that quantities state, and of results beside each other.
+core::Json colours_json() {
+    core::Json json;
+    for (const auto& [name, map] : {std::pair{"depth", nlos::ColourMap::Viridis},
+                                    {"heat", nlos::ColourMap::Inferno},
+                                    {"share", nlos::ColourMap::Cividis},
+                                    {"diverging", nlos::ColourMap::Diverging}}) {
+        std::string table;
+        for (const nlos::Colour& colour : nlos::colours_of(map)) table += hex_text(colour);
+        json["maps"][name] = table;
+    }
+    for (const nlos::Colour& colour : nlos::kSeriesColours) {
+        json["series"].push_back("#" + hex_text(colour));
+    }
+    return json;
+}
+
 core::Json views_json(const PageViews& views, int halvings, PageArrays& arrays) {
     const PageWall wall = page_wall(views);
     core::Json json{{"version", 1},
                     {"wall", wall.footprint},
+                    {"colours", colours_json()},
                     {"results", core::Json::array()},
                     {"best", views.best + (views.truth ? 1 : 0)},
                     {"films", core::Json::array()}};

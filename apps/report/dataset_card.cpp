@@ -15,20 +15,17 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The outline of a histogram's bars.
-nlos::CurvePanel outline(const std::string& key, const DrawnHistogram& histogram) {
-    nlos::CurvePanel panel;
-    panel.title = key;
-    panel.x_label = key;
-    panel.y_label = "number";
+nlos::Plot outline(const std::string& key, const DrawnHistogram& histogram) {
+    nlos::Plot plot = nlos::area_plot(key, key, "number");
     const double width = std::max(histogram.high - histogram.low, 1e-12);
     const auto count = static_cast<double>(histogram.counts.size());
     for (std::size_t bin = 0; bin < histogram.counts.size(); ++bin) {
         for (const std::size_t edge : {bin, bin + 1}) {
-            panel.x.push_back(histogram.low + width * static_cast<double>(edge) / count);
-            panel.y.push_back(static_cast<double>(histogram.counts[bin]));
+            plot.lines.front().add(histogram.low + width * static_cast<double>(edge) / count,
+                                   static_cast<double>(histogram.counts[bin]));
         }
     }
-    return panel;
+    return plot;
 }
 
 std::vector<Fact> dataset_facts(const DatasetIndex& index, const DatasetTotals& totals) {

@@ -213,6 +213,7 @@ void Canvas::frame(const PixelBox& box, Colour colour, int thickness) {
     const double half = 0.5 * thickness;
     drawing_->use(colour);
     cairo_save(drawing_->context.get());
+    cairo_set_dash(drawing_->context.get(), nullptr, 0, 0.0);
     cairo_set_line_join(drawing_->context.get(), CAIRO_LINE_JOIN_MITER);
     cairo_set_line_width(drawing_->context.get(), thickness);
     cairo_rectangle(drawing_->context.get(),
@@ -234,10 +235,13 @@ void Canvas::fill_polygon(const std::vector<std::array<double, 2>>& points,
 
 void Canvas::polyline(const std::vector<std::array<double, 2>>& points,
                       Colour colour,
-                      int thickness) {
+                      int thickness,
+                      Stroke stroke) {
     drawing_->use(colour);
     cairo_set_line_width(drawing_->context.get(), thickness);
     drawing_->path(points);
+    const std::array<double, 2> dashes{4.0 * thickness, 3.0 * thickness};
+    cairo_set_dash(drawing_->context.get(), dashes.data(), stroke == Stroke::Dashed ? 2 : 0, 0.0);
     cairo_stroke(drawing_->context.get());
 }
 

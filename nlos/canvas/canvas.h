@@ -24,6 +24,7 @@ struct PixelBox {
 /// What a picture is stored as: pixels, or lines and letters that stay sharp at any size.
 enum class PictureFormat { Png, Svg, Pdf };
 
+enum class Stroke { Solid, Dashed };
 enum class TextAnchor { Start, Centre, End };
 enum class TextDirection { Horizontal, Upwards };
 
@@ -55,7 +56,11 @@ class Canvas {
                       Colour colour,
                       double opacity);
 
-    void polyline(const std::vector<std::array<double, 2>>& points, Colour colour, int thickness);
+    /// Draws a line through points with round ends; of one point twice, a dot.
+    void polyline(const std::vector<std::array<double, 2>>& points,
+                  Colour colour,
+                  int thickness,
+                  Stroke stroke = Stroke::Solid);
 
     /// Draws text in UTF-8 whose capitals are centred across its line on (x, y).
     void text(int x, int y, const std::string& text, const TextStyle& style);

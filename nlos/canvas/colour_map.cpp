@@ -59,9 +59,10 @@ Table diverging_table() {
 }  // namespace
 
 const std::array<Colour, 256>& colours_of(ColourMap map) {
-    static const std::array<Table, 4> tables{// in the order of ColourMap
+    static const std::array<Table, 5> tables{// in the order of ColourMap
                                              opencv_table(cv::COLORMAP_INFERNO),
                                              opencv_table(cv::COLORMAP_VIRIDIS),
+                                             opencv_table(cv::COLORMAP_CIVIDIS),
                                              diverging_table(),
                                              blended_table<2>({{{0, 0, 0}, {255, 255, 255}}})};
     return tables[static_cast<std::size_t>(map)];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace nlos {
@@ -12,14 +13,31 @@ struct Colour {
     std::uint8_t blue = 0;
 };
 
-/// How values become colours: Inferno for amounts of light, Viridis for depths, Diverging for
-/// signed differences (white in the middle), Grey for photographs.
-enum class ColourMap { Inferno, Viridis, Diverging, Grey };
+/// How values become colours: Inferno for amounts of light, Viridis for depths, Cividis for shares,
+/// Diverging for signed differences (white in the middle), Grey for photographs. All but the
+/// diverging one grow evenly lighter, so that they survive colour blindness and print.
+enum class ColourMap { Inferno, Viridis, Cividis, Diverging, Grey };
 
 /// The map's 256 colours, from the lowest to the highest value.
 const std::array<Colour, 256>& colours_of(ColourMap map);
 
 /// The colour at `share` of the value range; shares outside [0, 1] are clamped.
 Colour colour_at(ColourMap map, double share);
+
+/// The colours of lines and results that are told apart by them, again from the first after the
+/// last; colour-blind readers see them apart too.
+inline constexpr std::array<Colour, 10> kSeriesColours{{{0, 114, 178},
+                                                        {230, 159, 0},
+                                                        {0, 158, 115},
+                                                        {204, 121, 167},
+                                                        {213, 94, 0},
+                                                        {86, 180, 233},
+                                                        {140, 140, 140},
+                                                        {181, 169, 0},
+                                                        {139, 69, 19},
+                                                        {110, 60, 200}}};
+inline Colour series_colour(std::size_t number) {
+    return kSeriesColours[number % kSeriesColours.size()];
+}
 
 }  // namespace nlos

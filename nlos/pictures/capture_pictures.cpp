@@ -45,7 +45,7 @@ ImagePanel streak_panel(const core::Capture& capture,
     if (grid) panel.x_direction = AxisDirection::Reversed;  // as the wall beside it is seen
     panel.y_direction = AxisDirection::Reversed;
     panel.value_label = light_per_bin_label(capture);
-    panel.scale = AxisScale::Free;
+    panel.aspect = AspectRatio::Free;
     panel.value_range = light_range(panel.values, kBrightestShare);
     choose_scale(panel);
     for (std::size_t i = 0; i < panel.values.size(); ++i) {
@@ -56,19 +56,17 @@ ImagePanel streak_panel(const core::Capture& capture,
     return panel;
 }
 
-CurvePanel curve_panel(const core::Capture& capture,
-                       const std::vector<double>& mean,
-                       const std::array<std::size_t, 2>& bins) {
-    CurvePanel panel;
-    panel.title =
-        capture.scan.camera ? "Mean transient of all pixels" : "Mean transient of all points";
+Plot mean_plot(const core::Capture& capture,
+               const std::vector<double>& mean,
+               const std::array<std::size_t, 2>& bins) {
+    Plot plot = area_plot(
+        capture.scan.camera ? "Mean transient of all pixels" : "Mean transient of all points",
+        "path length [m]",
+        light_per_bin_label(capture));
     for (std::size_t bin = bins[0]; bin < bins[1]; ++bin) {
-        panel.x.push_back(capture.time_axis.bin_center_m(static_cast<double>(bin)));
-        panel.y.push_back(mean[bin]);
+        plot.lines.front().add(capture.time_axis.bin_center_m(static_cast<double>(bin)), mean[bin]);
     }
-    panel.x_label = "path length [m]";
-    panel.y_label = light_per_bin_label(capture);
-    return panel;
+    return plot;
 }
 
 /// The image of all light, the mean transient, and the image in a few gates that share the time
@@ -86,7 +84,7 @@ std::vector<Panel> image_panels(const core::Capture& capture) {
     std::vector<Panel> panels{gated("Light of all bins", {0, num_bins})};
     const std::vector<double> mean = mean_transient(capture);
     const std::array<std::size_t, 2> shown = shown_bins(mean);
-    panels.emplace_back(curve_panel(capture, mean, shown));
+    panels.emplace_back(mean_plot(capture, mean, shown));
     const std::size_t num_gates = std::min(kMaxGates, shown[1] - shown[0]);
     for (std::size_t i = 0; i < num_gates; ++i) {
         const std::size_t first = shown[0] + i * (shown[1] - shown[0]) / num_gates;
@@ -108,7 +106,7 @@ std::vector<Panel> scan_panels(const core::Capture& capture) {
     std::vector<Panel> panels;
     if (has_time || !grid) panels.emplace_back(streak_panel(capture, grid, bins));
     if (grid) panels.emplace_back(light_panel(capture, capture.transient, *grid));
-    if (has_time) panels.emplace_back(curve_panel(capture, mean, bins));
+    if (has_time) panels.emplace_back(mean_plot(capture, mean, bins));
     return panels;
 }
 

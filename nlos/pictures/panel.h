@@ -2,6 +2,7 @@
 #pragma once
 
 #include "nlos/canvas/colour_map.h"
+#include "nlos/plots/plot.h"
 
 #include <array>
 #include <cstddef>
@@ -17,7 +18,7 @@ namespace nlos {
 enum class AxisDirection { Usual, Reversed };
 
 /// Whether a metre is as long along x as along y.
-enum class AxisScale { Equal, Free };
+enum class AspectRatio { Equal, Free };
 
 /// How values become colours. Gamma: by their square root above the lower end, which shows what is
 /// far below the brightest; the colour bar's ticks say so.
@@ -37,7 +38,7 @@ struct ImagePanel {
     ColourMap colour_map = ColourMap::Inferno;
     AxisDirection x_direction = AxisDirection::Usual;
     AxisDirection y_direction = AxisDirection::Usual;
-    AxisScale scale = AxisScale::Equal;
+    AspectRatio aspect = AspectRatio::Equal;
     /// Of equal axes: the length that a plot of the usual size stands for, so that panels beside
     /// each other share a scale; 0: the longer axis.
     double full_length = 0.0;
@@ -62,15 +63,6 @@ ImagePanel image_of(std::size_t width, std::size_t height, const ValueOf& value_
     return panel;
 }
 
-/// A curve through (x, y), drawn as a line with axes; y starts at 0 or below.
-struct CurvePanel {
-    std::string title;
-    std::vector<double> x;
-    std::vector<double> y;
-    std::string x_label;  ///< with unit
-    std::string y_label;
-};
-
 /// A line of a drawing; with `fill` its inside is coloured too.
 struct DrawnLine {
     std::vector<std::array<double, 2>> points;  ///< (x, y) in the units of the axes
@@ -90,6 +82,6 @@ struct DrawingPanel {
     std::string y_label;
 };
 
-using Panel = std::variant<ImagePanel, CurvePanel, DrawingPanel>;
+using Panel = std::variant<ImagePanel, Plot, DrawingPanel>;
 
 }  // namespace nlos

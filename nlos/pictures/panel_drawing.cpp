@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/pictures/panel_drawing.h"
 
-#include "nlos/pictures/axis_drawing.h"
+#include "nlos/plots/plot_drawing.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -13,7 +13,6 @@ namespace nlos {
 namespace {
 
 // Sizes in pixels of the canvas.
-constexpr int kPlotSize = 640;  // longer side of a plot
 constexpr int kTitleHeight = 66;
 constexpr int kBarGap = 28;
 constexpr int kBarWidth = 22;
@@ -23,7 +22,6 @@ constexpr int kLegendStep = 40;
 constexpr int kPanelGap = 44;  // to the next panel
 
 constexpr Colour kNoValue{214, 217, 222};
-constexpr Colour kCurve{37, 99, 180};
 constexpr Colour kNoCategory{255, 255, 255};
 
 constexpr TextStyle kTitleText{18.0, kInk, TextAnchor::Start};
@@ -54,16 +52,12 @@ PixelSize equal_size(const std::array<double, 2>& x_range,
 }
 
 PixelSize plot_size(const ImagePanel& panel) {
-    if (panel.scale == AxisScale::Free) return {kPlotSize, kPlotSize};
+    if (panel.aspect == AspectRatio::Free) return {kPlotSize, kPlotSize};
     return equal_size(panel.x_range, panel.y_range, panel.full_length);
 }
 
 PixelSize plot_size(const DrawingPanel& panel) {
     return equal_size(panel.x_range, panel.y_range, 0.0);
-}
-
-PixelSize plot_size(const CurvePanel&) {
-    return {kPlotSize, kPlotSize};
 }
 
 /// What a plot takes beside its margins.
@@ -86,11 +80,19 @@ int right_margin(const ImagePanel& panel) {
     return kBarGap + (has_legend ? legend_width(panel.categories) : kBarWidth + kBarLabels) +
            kPanelGap;
 }
-int right_margin(const CurvePanel&) {
+int right_margin(const Plot&) {
     return kPanelGap;
 }
 int right_margin(const DrawingPanel& panel) {
     return kBarGap + legend_width(panel.legend) + kPanelGap;
+}
+
+template <class AnyPanel>
+int bottom_margin(const AnyPanel&) {
+    return kBottomMargin;
+}
+int bottom_margin(const Plot& plot) {
+    return kBottomMargin + legend_height(plot);
 }
 
 void check(const ImagePanel& panel) {
@@ -99,13 +101,6 @@ void check(const ImagePanel& panel) {
         "picture '" + panel.title + "'",
         fmt::format("found {} values for {} x {}", panel.values.size(), panel.width, panel.height),
         "must be one value per pixel and at least one");
-}
-
-void check(const CurvePanel& panel) {
-    if (!panel.x.empty() && panel.x.size() == panel.y.size()) return;
-    throw core::Error("picture '" + panel.title + "'",
-                      fmt::format("found {} x and {} y", panel.x.size(), panel.y.size()),
-                      "must be as many, and at least one");
 }
 
 void check(const DrawingPanel& panel) {
@@ -193,18 +188,6 @@ void draw_colour_bar(Canvas& canvas,
                 upwards(fitted(kLabelText, label, bar.height + kTitleHeight)));
 }
 
-/// Draws frame, ticks and labels of a plot.
-template <class AnyPanel>
-void draw_axes(Canvas& canvas,
-               const PixelBox& plot,
-               const PixelAxis& x,
-               const PixelAxis& y,
-               const AnyPanel& panel) {
-    canvas.frame(plot, kAxisColour, kLine);
-    draw_x_axis(canvas, plot, x, panel.x_label);
-    draw_y_axis(canvas, plot, y, panel.y_label);
-}
-
 /// Draws a legend whose upper left corner is (x, y).
 void draw_legend(Canvas& canvas, int x, int y, const Legend& legend) {
     int row = y + kLegendStep / 2;
@@ -225,7 +208,8 @@ void draw_plot(Canvas& canvas, const PixelBox& plot, const ImagePanel& panel) {
               plot,
               pixel_axis(panel.x_range, panel.x_direction, plot.x, plot.right()),
               pixel_axis(panel.y_range, panel.y_direction, plot.bottom(), plot.y),
-              panel);
+              panel.x_label,
+              panel.y_label);
     const PixelSize room = room_of({plot.width, plot.height});
     const int bar_x = plot.x + (plot.width + room.width) / 2 + kBarGap;
     const int bar_y = plot.y + (plot.height - room.height) / 2;
@@ -234,30 +218,6 @@ void draw_plot(Canvas& canvas, const PixelBox& plot, const ImagePanel& panel) {
         return;
     }
     draw_colour_bar(canvas, {bar_x, bar_y, kBarWidth, room.height}, panel, range);
-}
-
-// ---- Curves ------------------------------------------------------------------------------------
-
-void draw_plot(Canvas& canvas, const PixelBox& plot, const CurvePanel& panel) {
-    const auto [x_low, x_high] = std::minmax_element(panel.x.begin(), panel.x.end());
-    const auto [y_low, y_high] = std::minmax_element(panel.y.begin(), panel.y.end());
-    const double bottom = std::min(0.0, *y_low);
-    const double top = *y_high > bottom ? *y_high + 0.05 * (*y_high - bottom) : bottom + 1.0;
-    const double right = *x_high > *x_low ? *x_high : *x_low + 1.0;
-    const PixelAxis x{*x_low, right, plot.x, plot.right()};
-    const PixelAxis y{bottom, top, plot.bottom(), plot.y};
-
-    std::vector<std::array<double, 2>> line;
-    for (std::size_t i = 0; i < panel.x.size(); ++i) {
-        line.push_back({x.pixel(panel.x[i]), y.pixel(panel.y[i])});
-    }
-    std::vector<std::array<double, 2>> area = line;
-    area.push_back({line.back()[0], y.pixel(0.0)});
-    area.push_back({line.front()[0], y.pixel(0.0)});
-    draw_grid(canvas, plot, x, y);
-    canvas.fill_polygon(area, kCurve, 0.15);
-    canvas.polyline(line, kCurve, 4);
-    draw_axes(canvas, plot, x, y, panel);
 }
 
 // ---- Drawings ----------------------------------------------------------------------------------
@@ -279,7 +239,7 @@ void draw_plot(Canvas& canvas, const PixelBox& plot, const DrawingPanel& panel) 
             canvas.polyline(points, line.colour, line.thickness_px);
         }
     }
-    draw_axes(canvas, plot, x, y, panel);
+    draw_axes(canvas, plot, x, y, panel.x_label, panel.y_label);
     draw_legend(canvas, plot.right() + kBarGap, plot.y, panel.legend);
 }
 
@@ -294,7 +254,7 @@ PixelSize panel_size(const Panel& panel) {
         [](const auto& p) -> PixelSize {
             const PixelSize room = room_of(plot_size(p));
             return {kLeftMargin + room.width + right_margin(p),
-                    kTitleHeight + room.height + kBottomMargin};
+                    kTitleHeight + room.height + bottom_margin(p)};
         },
         panel);
 }

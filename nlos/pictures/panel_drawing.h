@@ -6,11 +6,6 @@
 
 namespace nlos {
 
-struct PixelSize {
-    int width = 0;
-    int height = 0;
-};
-
 /// Throws core::Error when a panel has no values or not as many as its size says.
 void check_panel(const Panel& panel);
 

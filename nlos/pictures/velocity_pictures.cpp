@@ -93,28 +93,26 @@ std::string hertz_text(double frequency_hz) {
     return fmt::format("{:.4g} {}Hz", frequency_hz / scale, prefix);
 }
 
-CurvePanel spectrum_panel(const core::VelocityHistogram& velocity) {
+Plot spectrum_plot(const core::VelocityHistogram& velocity) {
     const core::VelocityAxis& axis = velocity.axis;
     const std::vector<double> sums = sum_over_pairs(velocity.values);
     const double total = total_of(sums);
     const std::size_t stride = stride_of(velocity);
-    CurvePanel panel;
-    panel.title = fmt::format("Spectrum; 1 m/s is {} at {}",
-                              hertz_text(core::frequency_shift_hz(axis.carrier_hz, 1.0)),
-                              hertz_text(axis.carrier_hz));
+    Plot plot = area_plot(fmt::format("Spectrum; 1 m/s is {} at {}",
+                                      hertz_text(core::frequency_shift_hz(axis.carrier_hz, 1.0)),
+                                      hertz_text(axis.carrier_hz)),
+                          "path velocity [m/s]",
+                          kPowerLabel);
     for (std::size_t bin = 0; bin * stride < sums.size(); ++bin) {
         double power = 0.0;
         for (std::size_t i = bin * stride; i < (bin + 1) * stride; ++i) power += sums[i];
         const double share = decibels(total > 0.0 ? power / total : 0.0);
         // Both ends, so that the curve has the bins' steps.
         for (const std::size_t end : {bin, bin + 1}) {
-            panel.x.push_back(axis.bin_begin_m_per_s(static_cast<double>(end)));
-            panel.y.push_back(share);
+            plot.lines.front().add(axis.bin_begin_m_per_s(static_cast<double>(end)), share);
         }
     }
-    panel.x_label = "path velocity [m/s]";
-    panel.y_label = kPowerLabel;
-    return panel;
+    return plot;
 }
 
 ImagePanel velocity_over_time(const core::TimeAxis& time, const core::VelocityHistogram& velocity) {
@@ -132,7 +130,7 @@ ImagePanel velocity_over_time(const core::TimeAxis& time, const core::VelocityHi
     panel.y_direction = AxisDirection::Reversed;
     panel.value_label = kPowerLabel;
     panel.value_range = {0.0, decibels(1.0)};
-    panel.scale = AxisScale::Free;
+    panel.aspect = AspectRatio::Free;
     return panel;
 }
 
@@ -146,7 +144,7 @@ std::vector<Panel> velocity_panels(const core::Capture& capture) {
             panels.emplace_back(velocity_image(capture.scan, *capture.velocity));
         }
     }
-    panels.emplace_back(spectrum_panel(*capture.velocity));
+    panels.emplace_back(spectrum_plot(*capture.velocity));
     if (capture.velocity->axis.with_time && capture.time_axis.num_bins > 1) {
         panels.emplace_back(velocity_over_time(capture.time_axis, *capture.velocity));
     }

@@ -1,51 +1,26 @@
 // SPDX-License-Identifier: MIT
 // Colour maps as small tables, scales from values to shares of a colour map, and pictures of both.
 
-// Colours at even steps; those between are blended. All but the diverging one grow evenly
-// lighter, so that they survive colour blindness and black-and-white print.
-const kAnchors = {
-  depth:  // viridis
-    '440154 48186a 472d7b 424086 3b528b 33638d 2c728e 26818e 21908c ' +
-    '1f9f88 28ae80 3ebc74 5dc963 82d34c abdc32 d5e21a fde725',
-  heat:  // inferno
-    '000004 0b0724 210c4a 3c0965 57106d 70196e 89226a a32b61 bb3755 ' +
-    'd14644 e35932 f1711e f98d0a fcab0f f9ca32 f2e865 fcffa4',
-  share:  // cividis
-    '00224e 002e6a 1a386f 32436d 434e6c 52596d 61656f 6f7073 7c7b78 ' +
-    '8b8778 9b9376 aba072 bbad6c ccba64 ddc958 efd748 fee838',
-  diverging:  // blue, white, red
-    '2166ac 4393c3 92c5de d1e5f0 ffffff fddbc7 f4a582 d6604d b2182b',
-};
-
-// One colour for each result; they differ for colour-blind readers too.
-const kResultColours = ['#0072b2', '#e69f00', '#009e73', '#cc79a7', '#d55e00', '#56b4e9', '#8c8c8c', '#f0e442'];
-
 const tables = {};
 
-function blendedTable(anchors) {
-  const colours = anchors.split(' ').map((hex) => parseInt(hex, 16));
-  const table = new Uint32Array(256);  // as the four bytes of a picture element
-  for (let i = 0; i < 256; ++i) {
-    const position = (i / 255) * (colours.length - 1);
-    const low = Math.min(Math.floor(position), colours.length - 2);
-    const blend = (shift) => {
-      const a = (colours[low] >> shift) & 255;
-      const b = (colours[low + 1] >> shift) & 255;
-      return Math.round(a + (b - a) * (position - low));
-    };
-    table[i] = (255 << 24) | (blend(0) << 16) | (blend(8) << 8) | blend(16);
+function tableOf(hex) {
+  const table = new Uint32Array(hex.length / 6);  // as the four bytes of a picture element
+  for (let i = 0; i < table.length; ++i) {
+    const byte = (at) => parseInt(hex.slice(6 * i + 2 * at, 6 * i + 2 * at + 2), 16);
+    table[i] = (255 << 24) | (byte(2) << 16) | (byte(1) << 8) | byte(0);
   }
   return table;
 }
 
 /** 256 colours of a map, each as the picture element 0xAABBGGRR. */
 viewer.colourTable = function (name) {
-  const known = Object.prototype.hasOwnProperty.call(kAnchors, name) ? name : 'heat';
-  if (!tables[known]) tables[known] = blendedTable(kAnchors[known]);
+  const maps = viewer.colours.maps;
+  const known = Object.prototype.hasOwnProperty.call(maps, name) ? name : 'heat';
+  if (!tables[known]) tables[known] = tableOf(maps[known]);
   return tables[known];
 };
 
-viewer.resultColour = (index) => kResultColours[index % kResultColours.length];
+viewer.resultColour = (index) => viewer.colours.series[index % viewer.colours.series.length];
 
 /** The range that a colour map covers: a diverging one is centred on zero, shares are 0 to 1. */
 viewer.colourRange = function (colours, range) {

@@ -92,6 +92,7 @@ function main() {
   let problem = null;
   try {
     metadata = viewer.readMetadata();
+    viewer.colours = metadata.colours;
   } catch (error) {
     problem = error;
   }

@@ -30,7 +30,7 @@ TEST(Html, EscapesWhatHasAMeaning) {
 
 TEST(Html, PicturesCarryTheirBytesAndWidth) {
     const std::string png =
-        nlos::encode_panels({nlos::CurvePanel{"curve", {0.0, 1.0}, {1.0, 2.0}, "x", "y"}}, 1);
+        nlos::encode_panels({nlos::Plot{"curve", "x", "y", {{"", {1.0, 2.0}, {1.0, 2.0}}}}}, 1);
     const std::string image = embedded_image(png, "image/png", "a \"curve\"");
     EXPECT_TRUE(contains(image, "src=\"data:image/png;base64,iVBOR"));
     EXPECT_TRUE(contains(image, " width=\""));

@@ -149,7 +149,7 @@ TEST(Picture, MetresAreAsLongAlongBothAxes) {
     EXPECT_EQ(plot_size(panel), (std::array{640, 480}));
     panel.full_length = 1.0;
     EXPECT_EQ(plot_size(panel), (std::array{1280, 960}));
-    panel.scale = AxisScale::Free;
+    panel.aspect = AspectRatio::Free;
     EXPECT_EQ(plot_size(panel), (std::array{640, 640}));
 }
 
@@ -172,16 +172,19 @@ TEST(Picture, PanelsWithoutMatchingValuesAreRefused) {
     panel.values.pop_back();
     EXPECT_ERROR_WITH(encode_panels({panel}, 1), "found 15 values for 4 x 4");
     EXPECT_ERROR_WITH(encode_panels({}, 1), "found no panel");
-    EXPECT_ERROR_WITH(encode_panels({CurvePanel{"c", {1.0}, {}, "", ""}}, 1), "1 x and 0 y");
+    EXPECT_ERROR_WITH(encode_panels({Plot{"c", "", "", {{"", {1.0}, {}}}}}, 1), "1 x and 0 y");
 }
 
 TEST(Picture, OddCurvesCanBeDrawn) {
     for (const auto& y :
          {std::vector<double>{0.0, 0.0}, {5.0, 5.0}, {-1.0, -2.0}, {1e-12, 2e-12}}) {
-        const CurvePanel curve{"curve", {0.0, 1.0}, y, "x", "y"};
+        Plot curve = area_plot("curve", "x", "y");
+        curve.lines.front().x = {0.0, 1.0};
+        curve.lines.front().y = y;
         EXPECT_FALSE(decoded_png(encode_panels({curve}, 1)).empty());
     }
-    const CurvePanel point{"point", {1.0}, {1.0}, "x", "y"};
+    Plot point = area_plot("point", "x", "y");
+    point.lines.front().add(1.0, 1.0);
     EXPECT_FALSE(decoded_png(encode_panels({point}, 1)).empty());
 }
 

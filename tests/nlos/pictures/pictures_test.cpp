@@ -59,7 +59,7 @@ TEST(Pictures, ViewsOfDeepVolumesShareTheScaleOfTheWall) {
     const auto& front = std::get<ImagePanel>(panels[0]);
     for (std::size_t i = 0; i < 3; ++i) {
         const auto& view = std::get<ImagePanel>(panels[i]);
-        EXPECT_EQ(view.scale, AxisScale::Equal);
+        EXPECT_EQ(view.aspect, AspectRatio::Equal);
         EXPECT_EQ(view.full_length, front.full_length);
     }
     EXPECT_EQ(std::get<ImagePanel>(panels[2]).x_range, front.x_range);
@@ -158,7 +158,7 @@ TEST(Pictures, StreakHoldsTheMiddleRowOfTheWall) {
     EXPECT_NEAR(streak.y_range[0], 0.25, 1e-12);
     EXPECT_NEAR(streak.y_range[1], 0.25 + 5 * 0.008, 1e-12);
     EXPECT_EQ(image(panels[1]).values.size(), 6U);
-    EXPECT_EQ(std::get<CurvePanel>(panels[2]).y.size(), 5U);
+    EXPECT_EQ(std::get<Plot>(panels[2]).lines.front().y.size(), 5U);
 }
 
 TEST(Pictures, EveryKindOfCaptureCanBeDrawn) {
@@ -201,7 +201,7 @@ TEST(Pictures, VelocitiesHaveAnImageOfTheirMeanAndASpectrum) {
     ASSERT_EQ(panels.size(), 2U);
     EXPECT_FLOAT_EQ(image(panels[0]).values[1], 0.375F);
     EXPECT_TRUE(std::isnan(image(panels[0]).values[0]));
-    const auto& spectrum = std::get<CurvePanel>(panels[1]);
+    const auto& spectrum = std::get<Plot>(panels[1]).lines.front();
     // Steps from edge to edge, in decibels over a millionth of all light.
     EXPECT_EQ(spectrum.x, (std::vector<double>{-1.0, -0.5, -0.5, 0.0, 0.0, 0.5, 0.5, 1.0}));
     EXPECT_NEAR(spectrum.y.front(), 10.0 * std::log10(0.25e6), 1e-9);

@@ -3,12 +3,19 @@
 
 #include "nlos/canvas/canvas.h"
 
+#include <cmath>
 #include <string>
 #include <vector>
 
 namespace nlos {
 
+struct PixelSize {
+    int width = 0;
+    int height = 0;
+};
+
 // Around a plot, in pixels of the canvas.
+inline constexpr int kPlotSize = 640;      // longer side of a plot
 inline constexpr int kLeftMargin = 132;    // y label and tick labels
 inline constexpr int kBottomMargin = 108;  // tick labels and x label
 inline constexpr int kSmallestRoom = 200;  // of a plot along either axis, however thin it is
@@ -29,19 +36,27 @@ TextStyle upwards(TextStyle style);
 /// The style, with smaller letters where the text would be longer than `length_px`.
 TextStyle fitted(TextStyle style, const std::string& text, int length_px);
 
+enum class AxisScale { Linear, Logarithmic };
+
 /// One axis of a plot: from value to pixel.
 struct PixelAxis {
     double low = 0.0;
     double high = 1.0;
     int low_px = 0;
     int high_px = 1;
+    AxisScale scale = AxisScale::Linear;
+    std::vector<double> ticks{};  ///< where numbers stand; empty: where round ones do
 
     double pixel(double value) const {
-        return low_px + (value - low) / (high - low) * (high_px - low_px);
+        const auto place = [&](double of) {
+            return scale == AxisScale::Linear ? of : std::log(of);
+        };
+        return low_px +
+               (place(value) - place(low)) / (place(high) - place(low)) * (high_px - low_px);
     }
 };
 
-/// Round numbers along an axis with the texts to print beside them.
+/// Numbers along an axis with the texts to print beside them.
 struct AxisTicks {
     std::vector<double> values;
     std::vector<std::string> labels;  ///< of values / 10^exponent
@@ -61,15 +76,13 @@ std::string label_with_exponent(std::string label, int exponent);
 /// The largest number of ticks along an axis that goes upwards.
 int tick_count(int length_px);
 
-/// Ticks, their numbers and the label, below and to the left of a plot.
-void draw_x_axis(Canvas& canvas,
-                 const PixelBox& plot,
-                 const PixelAxis& axis,
-                 const std::string& label);
-void draw_y_axis(Canvas& canvas,
-                 const PixelBox& plot,
-                 const PixelAxis& axis,
-                 const std::string& label);
+/// Draws frame, ticks with their numbers, and labels of a plot.
+void draw_axes(Canvas& canvas,
+               const PixelBox& plot,
+               const PixelAxis& x,
+               const PixelAxis& y,
+               const std::string& x_label,
+               const std::string& y_label);
 
 /// Lines across the plot at the ticks of both axes.
 void draw_grid(Canvas& canvas, const PixelBox& plot, const PixelAxis& x, const PixelAxis& y);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/pictures/axis_drawing.h"
+#include "nlos/plots/axis_drawing.h"
 
 #include <gtest/gtest.h>
 
