@@ -35,11 +35,14 @@ std::string check_name(const std::string& name) {
     return name.empty() ? "found no name; must be one" : "";
 }
 
-// How help writes the value of a shorthand.
-std::string type_of(const Shorthand& shorthand, const std::vector<core::SettingHelp>& settings) {
-    const auto setting = std::ranges::find(settings, shorthand.key, &core::SettingHelp::key);
-    const bool is_open = setting == settings.end() || setting->choices.empty();
-    return is_open ? shorthand.type : fmt::format("{{{}}}", fmt::join(setting->choices, ","));
+// Has help state the choices and the default that a setting has.
+void describe_value(const core::SettingHelp& setting, CLI::Option& option) {
+    if (!setting.choices.empty()) {
+        option.type_name(fmt::format("{{{}}}", fmt::join(setting.choices, ",")));
+    }
+    const core::Json value = core::Json::parse(setting.default_value);
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    if (!value.is_null() && !text.empty()) option.default_str(text);
 }
 
 }  // namespace
@@ -83,14 +86,14 @@ void add_shorthands(Command& command,
                 shorthand.help);
             continue;
         }
-        command
-            .add_option_function<std::string>(
-                shorthand.flag,
-                [&overrides, prefix](const std::string& value) {
-                    overrides.push_back(prefix + value);
-                },
-                shorthand.help)
-            ->type_name(type_of(shorthand, command.settings));
+        CLI::Option* option = command.add_option_function<std::string>(
+            shorthand.flag,
+            [&overrides, prefix](const std::string& value) { overrides.push_back(prefix + value); },
+            shorthand.help);
+        option->type_name(shorthand.type);
+        const auto setting =
+            std::ranges::find(command.settings, shorthand.key, &core::SettingHelp::key);
+        if (setting != command.settings.end()) describe_value(*setting, *option);
     }
 }
 

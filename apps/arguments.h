@@ -55,8 +55,8 @@ struct Shorthand {
     const char* help;
 };
 
-/// Declares the flags; those given go to `overrides` as `key=value`. Help names the choices that
-/// command.settings has for the key.
+/// Declares the flags; those given go to `overrides` as `key=value`. Help names the choices and the
+/// default that command.settings has for the key.
 void add_shorthands(Command& command,
                     std::span<const Shorthand> shorthands,
                     std::vector<std::string>& overrides);

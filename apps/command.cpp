@@ -39,8 +39,10 @@ class HelpFormatter : public CLI::Formatter {
 
 }  // namespace
 
-Command::Command(const std::string& name, const std::string& description)
-    : CLI::App(description, name) {
+Command::Command(const std::string& name,
+                 const std::string& summary,
+                 const std::string& example_line)
+    : CLI::App(summary, name), example(example_line) {
     // Last in help, behind what the command adds.
     add_flag("--quiet", output_settings().quiet, "Print no more than warnings and errors")
         ->group(kGroupOfAll);
@@ -51,9 +53,10 @@ Command::Command(const std::string& name, const std::string& description)
     formatter(std::make_shared<HelpFormatter>());
 }
 
-Command& add_command(CLI::App& parent, const std::string& name, const std::string& description) {
-    const auto command = std::make_shared<Command>(name, description);
+Command& add_command(CLI::App& parent, const CommandRow& row) {
+    const auto command = std::make_shared<Command>(row.name, row.summary, row.example);
     parent.add_subcommand(command);
+    if (row.declare != nullptr) row.declare(*command);
     return *command;
 }
 

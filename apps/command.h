@@ -8,7 +8,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace apps {
@@ -20,26 +19,30 @@ inline constexpr const char* kGroupOfAll = "Options of every command";
 /// shells say beside them.
 class Command : public CLI::App {
  public:
-    Command(const std::string& name, const std::string& description);
+    Command(const std::string& name, const std::string& summary, const std::string& example);
+
+    /// Makes arguments for options to fill, and lets the command run on them.
+    template <class Arguments>
+    Arguments& runs(void (*run)(const Arguments&)) {
+        const auto arguments = std::make_shared<Arguments>();
+        callback([arguments, run] { run(*arguments); });
+        return *arguments;
+    }
 
     std::vector<core::SettingHelp> settings;  ///< what --set reaches
     std::string example;                      ///< a command line that works in the checkout
 };
 
-/// Declares a command of the program or of another command, with the options that all have.
-Command& add_command(CLI::App& parent, const std::string& name, const std::string& description);
+/// A command as its file describes it.
+struct CommandRow {
+    const char* name;
+    const char* summary;          ///< what help says of it
+    const char* example;          ///< a command line that works in the checkout
+    void (*declare)(Command&){};  ///< adds its options, and what runs; null: `nlos-bench` knows
+};
 
-/// The same of a command that runs on arguments of its own, which its options are to fill.
-template <class Arguments>
-std::pair<Command&, Arguments&> add_command(CLI::App& parent,
-                                            const std::string& name,
-                                            const std::string& description,
-                                            void (*run)(const Arguments&)) {
-    const auto arguments = std::make_shared<Arguments>();
-    Command& command = add_command(parent, name, description);
-    command.callback([arguments, run] { run(*arguments); });
-    return {command, *arguments};
-}
+/// Adds a command to the program or to another command, with the options that all have.
+Command& add_command(CLI::App& parent, const CommandRow& row);
 
 /// The name of a command as it is typed, as in "nlos bench render".
 std::string typed_name(const CLI::App& command);

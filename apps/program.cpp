@@ -4,6 +4,7 @@
 #include "apps/arguments.h"
 #include "apps/commands.h"
 #include "apps/outcome.h"
+#include "apps/run_program.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "renderer/core/error.h"
@@ -27,32 +28,30 @@ struct CommandLine {
     std::string command;
 };
 
-void declare_commands(CLI::App& app) {
-    add_render_command(app);
-    add_convert_command(app);
-    add_simulate_noise_command(app);
-    add_reconstruct_command(app);
-    add_fit_command(app);
-    add_calibrate_command(app);
-    add_compare_command(app);
-    add_info_command(app);
-    add_report_command(app);
-    add_view_command(app);
-    add_bench_command(app);
-    add_generate_command(app);
-    add_sweep_command(app);
-    add_track_command(app);
-    add_demo_command(app);
-    add_manual_command(app);
+// Has another program run the command, where one does.
+void hand_over(const CommandLine& line) {
+    const auto word = std::ranges::find_if(
+        line.arguments, [](const std::string& argument) { return !argument.starts_with('-'); });
+    if (word == line.arguments.end()) return;
+    for (const CommandRow* row : all_commands()) {
+        if (row->name != *word || row->declare != nullptr) continue;
+        std::vector<std::string> words{"nlos"};
+        words.insert(words.end(), line.arguments.begin(), line.arguments.end());
+        become("nlos-bench", std::move(words));
+    }
 }
 
 // Runs the command; its callback is called within parse().
-void run(CommandLine& line) {
-    Command app("nlos", "Non-line-of-sight imaging: simulate, reconstruct, fit, compare");
+void run(CommandLine& line, const std::map<std::string, void (*)(Command&)>& beside) {
+    Command app("nlos",
+                "Non-line-of-sight imaging: simulate, reconstruct, fit, compare",
+                "nlos demo -o out/demo");
     app.set_version_flag("--version", version_text());
     app.require_subcommand(1);
-    app.example = "nlos demo -o out/demo";
-    declare_commands(app);
+    for (const CommandRow* row : all_commands()) {
+        Command& command = add_command(app, *row);
+        if (const auto it = beside.find(row->name); it != beside.end()) it->second(command);
+    }
     reject_unknown_command(app, line.arguments);
 
     std::vector<std::string> reversed = expand_set_arguments(line.arguments);
@@ -85,7 +84,7 @@ std::string refused_path(const std::filesystem::filesystem_error& error) {
 
 }  // namespace
 
-int run_nlos(int argc, char** argv) {
+int run_nlos(int argc, char** argv, const std::map<std::string, void (*)(Command&)>& beside) {
     CommandLine line{{argv + 1, argv + argc}, "nlos"};
     command_line() = "nlos";
     for (const std::string& argument : line.arguments) {
@@ -93,9 +92,10 @@ int run_nlos(int argc, char** argv) {
         // Known now, for arguments that cannot be parsed.
         if (argument == "--json") output_settings().json = true;
     }
-    handle_signals();
     try {
-        run(line);
+        if (beside.empty()) hand_over(line);
+        handle_signals();
+        run(line, beside);
         print_outcome(line.command, 0, "");
         flush_output();
         return 0;

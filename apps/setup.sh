@@ -10,7 +10,7 @@ packages=(
     libeigen3-dev libfftw3-dev libhdf5-dev libmatio-dev libopenexr-dev libflann-dev liblz4-dev libopencv-dev
     libcairo2-dev libfreetype-dev fonts-dejavu-core libpng-dev libturbojpeg0-dev zlib1g-dev libxxhash-dev libmeshoptimizer-dev
     libceres-dev libisal-dev libzip-dev libassimp-dev libpugixml-dev libyaml-cpp-dev
-    libjs-three libgtest-dev gnuplot-nox
+    libjs-three libgtest-dev
     "$@"
 )
 

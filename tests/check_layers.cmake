@@ -19,7 +19,7 @@ set(floors_renderer
     "renderer")
 set(floors_nlos
     "nlos/containers|nlos/fourier|nlos/detector|nlos/reconstruction|nlos/canvas"
-    "nlos/layouts|nlos/containers/writers"
+    "nlos/layouts|nlos/containers/writers|nlos/plots"
     "nlos/formats|nlos/compare|nlos/preparation"
     "nlos/methods|nlos/pictures"
     "nlos/solver"
@@ -31,13 +31,14 @@ set(floors_calib
     "calib")
 set(floors_apps
     "apps"
-    "apps/batch|apps/manual|apps/shapes"
-    "apps/bench|apps/dataset"
+    "apps/batch|apps/manual|apps/shapes|apps/tables"
+    "apps/dataset"
     "apps/page"
-    "apps/report|apps/bench/render|apps/bench/reconstruct|apps/bench/fit|apps/bench/track"
-    "apps/bench/field"
+    "apps/report"
     "apps/commands"
-    "apps/python|apps/sweep")
+    "apps/python|apps/sweep|apps/bench"
+    "apps/bench/render|apps/bench/reconstruct|apps/bench/fit|apps/bench/field"
+    "apps/bench/program")
 
 # What lies below a whole top folder.
 set(below_renderer "")

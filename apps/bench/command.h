@@ -42,32 +42,21 @@ inline void add_setting(CLI::App& command,
     limit(*option, {static_cast<double>(low), true, static_cast<double>(high), true});
 }
 
-/// What the help says of a benchmark.
-struct BenchText {
-    std::string name;
-    std::string description;
-    std::string example;  ///< a command that works in the checkout
-};
-
-/// Declares the subcommand of one benchmark.
+/// Declares the options that all benchmarks have, and lets a command run one.
 ///
-/// declare   adds the options that the benchmark has beside those of all
 /// measure   runs it
+/// returns   what its own options are to fill
 template <class Settings>
-void add_benchmark(CLI::App& bench,
-                   const BenchText& text,
-                   void (*declare)(CLI::App&, Settings&),
-                   BenchResult (*measure)(const Settings&, const core::Progress&)) {
+Settings& add_benchmark(Command& command,
+                        BenchResult (*measure)(const Settings&, const core::Progress&)) {
     const auto state = std::make_shared<std::pair<BenchOutput, Settings>>();
-    Command& command = add_command(bench, text.name, text.description);
     add_output_options(command, state->first);
-    declare(command, state->second);
-    command.example = text.example;
-    command.callback([state, measure, name = text.name] {
+    command.callback([state, measure, name = command.get_name()] {
         run_benchmark(state->first, name, [&](const core::Progress& progress) {
             return measure(state->second, progress);
         });
     });
+    return state->second;
 }
 
 }  // namespace apps

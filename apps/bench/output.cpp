@@ -3,9 +3,9 @@
 
 #include "apps/arguments.h"
 #include "apps/bench/regression.h"
-#include "apps/bench/tables.h"
 #include "apps/outcome.h"
 #include "apps/progress_bar.h"
+#include "apps/tables/tables.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "nlos/pictures/picture.h"
@@ -54,12 +54,6 @@ std::string make_stem(const std::string& folder, const std::string& name) {
     std::filesystem::create_directories(folder, error);
     if (error) throw core::Error(folder, "cannot be made", "must be a writable folder");
     return (std::filesystem::path(folder) / ("bench_" + name)).string();
-}
-
-bool draw_plots(const BenchResult& result, const std::string& stem) {
-    bool drawn = true;
-    for (const auto& [suffix, plot] : result.plots) drawn = draw_plot(plot, stem + suffix) && drawn;
-    return drawn;
 }
 
 std::string text_of_file(const std::string& path) {
@@ -146,13 +140,13 @@ core::Json run_benchmark(const BenchOutput& output,
     core::write_text_file(stem + ".json", core::json_text(result.figures));
     core::write_text_file(stem + ".txt", table);
     if (!output.results.empty()) write_results(output, name, result.figures);
-    for (const auto& [suffix, picture] : result.pictures) {
-        for (const char* format : {".svg", ".png"}) {
+    for (const char* format : {".svg", ".png"}) {
+        for (const auto& [suffix, picture] : result.pictures) {
             nlos::write_panels(stem + suffix + format, picture.panels, picture.columns);
         }
-    }
-    if (!draw_plots(result, stem)) {
-        warn("gnuplot is not there, so no plot was drawn");
+        for (const auto& [suffix, plot] : result.plots) {
+            nlos::write_panels(stem + suffix + format, {plot}, 1);
+        }
     }
     write_message(table);
     note_written({stem + ".json", stem + ".txt", output.results});

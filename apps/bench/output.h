@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "apps/bench/gnuplot.h"
 #include "nlos/pictures/panel.h"
+#include "nlos/plots/plot.h"
 #include "renderer/core/progress.h"
 #include "renderer/core/settings.h"
 
@@ -49,7 +49,7 @@ struct BenchPicture {
 /// What a benchmark found.
 struct BenchResult {
     core::Json figures;                              ///< an object; tables.h makes tables of it
-    std::map<std::string, Plot> plots{};             ///< by the end of their file's name
+    std::map<std::string, nlos::Plot> plots{};       ///< by the end of their file's name
     std::map<std::string, BenchPicture> pictures{};  ///< likewise
 };
 

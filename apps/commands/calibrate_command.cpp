@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
-#include "apps/commands.h"
 #include "apps/estimate_text.h"
 #include "apps/outcome.h"
 #include "apps/progress_bar.h"
@@ -53,17 +52,21 @@ void run(const CalibrateArguments& arguments) {
           1e3 * setup.range_rms_m);
 }
 
-}  // namespace
-
-void add_calibrate_command(CLI::App& app) {
-    const auto [command, arguments] = add_command<CalibrateArguments>(
-        app, "calibrate", "Calibrate wall, spots, time zero and response of a set-up", run);
+void declare_calibrate(Command& command) {
+    auto& arguments = command.runs<CalibrateArguments>(run);
     command.settings = core::settings_help(calib::SetupSettings{});
     add_file_option(command, "SETUP", arguments.setup, "Description of the measurements (.json)")
         ->required();
     add_output_option(command, arguments.output, "Calibration to write (.json)")->required();
     add_set_option(command, arguments.overrides);
-    command.example = "nlos calibrate data/setup.json -o calibration.json";
 }
+
+}  // namespace
+
+extern const CommandRow kCalibrateCommand{
+    "calibrate",
+    "Calibrate wall, spots, time zero and response of a set-up",
+    "nlos calibrate data/setup.json -o calibration.json",
+    declare_calibrate};
 
 }  // namespace apps

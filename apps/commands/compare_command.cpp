@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/capture_options.h"
-#include "apps/commands.h"
 #include "apps/commands/compare_job.h"
 #include "apps/outcome.h"
 #include "apps/progress_bar.h"
@@ -51,11 +50,8 @@ void run(const CompareArguments& arguments) {
     print_written({arguments.output, arguments.picture});
 }
 
-}  // namespace
-
-void add_compare_command(CLI::App& app) {
-    const auto [command, arguments] = add_command<CompareArguments>(
-        app, "compare", "Score a result against the truth or another result", run);
+void declare_compare(Command& command) {
+    auto& arguments = command.runs<CompareArguments>(run);
     command.settings = core::settings_help(CaptureOptions{});
     add_file_option(command,
                     "A",
@@ -69,12 +65,19 @@ void add_compare_command(CLI::App& app) {
     command
         .add_option("--fscore-threshold-m",
                     arguments.fscore_threshold_m,
-                    "Distance that counts as a match of points [m] (default 0.01, of volumes "
-                    "their voxel diagonal)")
+                    fmt::format("Distance that counts as a match of points [m] (default {}, of "
+                                "volumes their voxel diagonal)",
+                                kDefaultThreshold_m))
         ->type_name("D");
     add_capture_options(command, arguments.overrides);
-    command.example =
-        "nlos compare scenes/letter/scene.glb scenes/letter/scene.json -o metrics.json";
 }
+
+}  // namespace
+
+extern const CommandRow kCompareCommand{
+    "compare",
+    "Score a result against the truth or another result",
+    "nlos compare scenes/letter/scene.glb scenes/letter/scene.json -o metrics.json",
+    declare_compare};
 
 }  // namespace apps

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/capture_options.h"
-#include "apps/commands.h"
 #include "apps/outcome.h"
 #include "apps/progress_bar.h"
 #include "apps/terminal.h"
@@ -75,14 +74,8 @@ void run(const ConvertArguments& arguments) {
           core::enum_name(capture.unit));
 }
 
-}  // namespace
-
-void add_convert_command(CLI::App& app) {
-    const auto [command, arguments] = add_command<ConvertArguments>(
-        app,
-        "convert",
-        "Write a capture in another format, or a scene of Mitsuba or y-tal as one of ours",
-        run);
+void declare_convert(Command& command) {
+    auto& arguments = command.runs<ConvertArguments>(run);
     command.settings = core::settings_help(CaptureOptions{});
     command
         .add_option("FILES",
@@ -112,7 +105,14 @@ void add_convert_command(CLI::App& app) {
                      arguments.write.for_ytal,
                      "HDF5 without the group /nlos, with which y-tal refuses files");
     add_capture_options(command, arguments.overrides);
-    command.example = "nlos convert data/letter.h5 letter.exr";
 }
+
+}  // namespace
+
+extern const CommandRow kConvertCommand{
+    "convert",
+    "Write a capture in another format, or a scene of Mitsuba or y-tal as one of ours",
+    "nlos convert data/letter.h5 letter.exr",
+    declare_convert};
 
 }  // namespace apps

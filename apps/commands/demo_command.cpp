@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
-#include "apps/commands.h"
 #include "apps/commands/compare_job.h"
 #include "apps/commands/fit_job.h"
 #include "apps/commands/reconstruct_job.h"
@@ -91,14 +90,18 @@ void run(const DemoArguments& arguments) {
     print("wrote {}\n", file("report.html"));
 }
 
-}  // namespace
-
-void add_demo_command(CLI::App& app) {
-    const auto [command, arguments] = add_command<DemoArguments>(
-        app, "demo", "Scene, capture, reconstruction, fit, comparison and report in one go", run);
+void declare_demo(Command& command) {
+    auto& arguments = command.runs<DemoArguments>(run);
     add_output_folder_option(command, arguments.folder, "Folder for the results")
         ->capture_default_str();
-    command.example = "nlos demo -o out/demo";
 }
+
+}  // namespace
+
+extern const CommandRow kDemoCommand{
+    "demo",
+    "Scene, capture, reconstruction, fit, comparison and report in one go",
+    "nlos demo -o out/demo",
+    declare_demo};
 
 }  // namespace apps

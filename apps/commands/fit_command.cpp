@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/capture_options.h"
-#include "apps/commands.h"
 #include "apps/commands/fit_job.h"
 #include "apps/estimate_text.h"
 #include "apps/outcome.h"
@@ -98,11 +97,8 @@ void run(const FitArguments& arguments) {
     for (const std::string& text : result.warnings) warn(text);
 }
 
-}  // namespace
-
-void add_fit_command(CLI::App& app) {
-    const auto [command, arguments] =
-        add_command<FitArguments>(app, "fit", "Fit a hidden scene to a capture", run);
+void declare_fit(Command& command) {
+    auto& arguments = command.runs<FitArguments>(run);
     command.settings = core::settings_help(WithCapture<calib::FitSettings>{});
     add_file_option(command, "CAPTURE", arguments.request.capture, "Capture in any readable format")
         ->required();
@@ -120,7 +116,13 @@ void add_fit_command(CLI::App& app) {
                     "Calibration of the set-up (.json)");
     add_threads_option(command, arguments.threads);
     add_capture_options(command, arguments.request.overrides);
-    command.example = "nlos fit data/letter.h5 scenes/letter/model.json -o fit.json";
 }
+
+}  // namespace
+
+extern const CommandRow kFitCommand{"fit",
+                                    "Fit a hidden scene to a capture",
+                                    "nlos fit data/letter.h5 scenes/letter/model.json -o fit.json",
+                                    declare_fit};
 
 }  // namespace apps

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/batch/work_share.h"
-#include "apps/commands.h"
 #include "apps/dataset/dataset_index.h"
 #include "apps/dataset/generate.h"
 #include "apps/outcome.h"
@@ -15,7 +14,6 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <memory>
 
 namespace apps {
 namespace {
@@ -28,12 +26,13 @@ struct GenerateArguments {
     std::string verify;
     std::string merge;
     std::vector<std::string> overrides;
+    const CLI::Option* slurm_option = nullptr;
     std::vector<std::string> slurm;  ///< none or one
     int threads = 0;
 };
 
 constexpr std::array<Shorthand, 1> kGenerateShorthands{
-    {{"--format", "format", "NAME", "How shards are stored (default hdf5)"}}};
+    {{"--format", "format", "NAME", "How shards are stored"}}};
 
 ItemRange read_range(const std::string& text) {
     ItemRange range;
@@ -73,10 +72,10 @@ void print_script(const GenerateArguments& arguments, const Dataset& dataset) {
     write_output(slurm_script(job));
 }
 
-void make(const GenerateArguments& arguments, bool prints_script) {
+void make(const GenerateArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
     Dataset dataset(read_recipe(arguments.recipe, arguments.overrides), arguments.folder);
-    if (prints_script) {
+    if (arguments.slurm_option->count() > 0) {
         core::require(arguments.items.empty() && arguments.shard.empty(),
                       "--slurm",
                       "found beside --items or --shard",
@@ -139,7 +138,7 @@ void merge(const std::string& folder) {
     print("wrote {} ({} items in {} shards)\n", path, index.items, index.shards.size());
 }
 
-void run(const GenerateArguments& arguments, bool prints_script) {
+void run(const GenerateArguments& arguments) {
     if (!arguments.verify.empty()) return verify(arguments.verify);
     if (!arguments.merge.empty()) return merge(arguments.merge);
     if (arguments.recipe.empty() || arguments.folder.empty()) {
@@ -147,38 +146,42 @@ void run(const GenerateArguments& arguments, bool prints_script) {
                           "found no RECIPE or no -o",
                           "must have both, or --verify DIR or --merge DIR");
     }
-    make(arguments, prints_script);
+    make(arguments);
 }
 
-}  // namespace
-
-void add_generate_command(CLI::App& app) {
-    Command& command = add_command(app, "generate", "Make a data set of captures of random scenes");
+void declare_generate(Command& command) {
+    auto& arguments = command.runs<GenerateArguments>(run);
     command.settings = core::settings_help(Recipe{});
-    const auto arguments = std::make_shared<GenerateArguments>();
-    add_file_option(command, "RECIPE", arguments->recipe, "What is drawn and stored (.json)");
-    add_output_folder_option(command, arguments->folder, "Folder of the data set");
+    add_file_option(command, "RECIPE", arguments.recipe, "What is drawn and stored (.json)");
+    add_output_folder_option(command, arguments.folder, "Folder of the data set");
     command.add_option("--shard",
-                       arguments->shard,
+                       arguments.shard,
                        "I/N: make the part I of N, from 0 to N - 1; without it, the part of the "
                        "present task of a Slurm array, or everything");
     command.add_option(
         "--items",
-        arguments->items,
+        arguments.items,
         "A:B: make only the items from A to B - 1; not by two processes at once within a shard");
-    add_shorthands(command, kGenerateShorthands, arguments->overrides);
-    add_folder_option(command, "--verify", arguments->verify, "Check every shard of this folder");
-    add_folder_option(command, "--merge", arguments->merge, "Write index.json of this folder");
-    CLI::Option* slurm =
-        command.add_option("--slurm",
-                           arguments->slurm,
-                           "Only print a script for sbatch, an array of TASKS (default: one per "
-                           "shard, at most 100) with --threads processors each");
-    slurm->type_name("TASKS")->expected(0, 1);
-    add_threads_option(command, arguments->threads);
-    add_set_option(command, arguments->overrides);
-    command.example = "nlos generate data/recipes/shapes.json -o shapes";
-    command.callback([arguments, slurm] { run(*arguments, slurm->count() > 0); });
+    add_shorthands(command, kGenerateShorthands, arguments.overrides);
+    add_folder_option(command, "--verify", arguments.verify, "Check every shard of this folder");
+    add_folder_option(command, "--merge", arguments.merge, "Write index.json of this folder");
+    arguments.slurm_option =
+        command
+            .add_option("--slurm",
+                        arguments.slurm,
+                        "Only print a script for sbatch, an array of TASKS (default: one per "
+                        "shard, at most 100) with --threads processors each")
+            ->type_name("TASKS")
+            ->expected(0, 1);
+    add_threads_option(command, arguments.threads);
+    add_set_option(command, arguments.overrides);
 }
+
+}  // namespace
+
+extern const CommandRow kGenerateCommand{"generate",
+                                         "Make a data set of captures of random scenes",
+                                         "nlos generate data/recipes/shapes.json -o shapes",
+                                         declare_generate};
 
 }  // namespace apps

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/capture_options.h"
-#include "apps/commands.h"
 #include "apps/commands/describe_file.h"
 #include "apps/file_kind.h"
 #include "apps/outcome.h"
@@ -173,11 +172,8 @@ void run(const InfoArguments& arguments) {
     draw(arguments, settings, bar.progress());
 }
 
-}  // namespace
-
-void add_info_command(CLI::App& app) {
-    const auto [command, arguments] =
-        add_command<InfoArguments>(app, "info", "Say what a file is and what it holds", run);
+void declare_info(Command& command) {
+    auto& arguments = command.runs<InfoArguments>(run);
     command.settings = core::settings_help(CaptureOptions{});
     add_file_option(
         command,
@@ -202,7 +198,13 @@ void add_info_command(CLI::App& app) {
                     arguments.write_layout,
                     "Write a layout for a file of named arrays, to be completed (.json)");
     add_capture_options(command, arguments.overrides);
-    command.example = "nlos info scenes/letter/scene.json";
 }
+
+}  // namespace
+
+extern const CommandRow kInfoCommand{"info",
+                                     "Say what a file is and what it holds",
+                                     "nlos info scenes/letter/scene.json",
+                                     declare_info};
 
 }  // namespace apps

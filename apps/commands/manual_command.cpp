@@ -8,7 +8,6 @@
 #include "renderer/core/output_file.h"
 
 #include <filesystem>
-#include <memory>
 #include <sstream>
 
 namespace apps {
@@ -25,8 +24,14 @@ std::string release_text() {
     return name + " " + number;
 }
 
-void write_manual(const CLI::App& program, const std::string& folder) {
-    const CommandEntry commands = describe_command(program);
+struct ManualArguments {
+    const CLI::App* program = nullptr;
+    std::string folder;
+};
+
+void run(const ManualArguments& arguments) {
+    const std::string& folder = arguments.folder;
+    const CommandEntry commands = describe_command(*arguments.program);
     const auto write = [&](const fs::path& name, const std::string& text) {
         const fs::path path = fs::path(folder) / name;
         std::error_code error;
@@ -51,16 +56,12 @@ void write_manual(const CLI::App& program, const std::string& folder) {
 
 }  // namespace
 
-void add_manual_command(CLI::App& app) {
-    Command& command =
-        add_command(app,
-                    "manual",
-                    "Write manual pages, completion for bash and zsh, and a reference of settings");
-    const auto folder = std::make_shared<std::string>();
-    add_output_folder_option(command, *folder, "Folder for man1/, bash/, zsh/ and reference.md")
+void declare_manual(Command& command) {
+    auto& arguments = command.runs<ManualArguments>(run);
+    arguments.program = command.get_parent();
+    add_output_folder_option(
+        command, arguments.folder, "Folder for man1/, bash/, zsh/ and reference.md")
         ->required();
-    command.example = "nlos manual -o out/manual";
-    command.callback([&app, folder] { write_manual(app, *folder); });
 }
 
 }  // namespace apps

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/capture_options.h"
-#include "apps/commands.h"
 #include "apps/commands/reconstruct_job.h"
 #include "apps/outcome.h"
 #include "apps/terminal.h"
@@ -17,8 +16,7 @@ struct ReconstructArguments {
     int threads = 0;
 };
 
-constexpr std::array kReconstructShorthands{
-    Shorthand{"--method", "method", "NAME", "Method (default auto)"}};
+constexpr std::array kReconstructShorthands{Shorthand{"--method", "method", "NAME", "Method"}};
 
 void run(const ReconstructArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
@@ -45,11 +43,8 @@ void run(const ReconstructArguments& arguments) {
           result.seconds);
 }
 
-}  // namespace
-
-void add_reconstruct_command(CLI::App& app) {
-    const auto [command, arguments] = add_command<ReconstructArguments>(
-        app, "reconstruct", "Reconstruct the hidden scene from a capture", run);
+void declare_reconstruct(Command& command) {
+    auto& arguments = command.runs<ReconstructArguments>(run);
     command.settings = core::settings_help(ReconstructOptions{});
     add_file_option(command,
                     "CAPTURE",
@@ -71,7 +66,14 @@ void add_reconstruct_command(CLI::App& app) {
                     "Calibration of the set-up (.json)");
     add_threads_option(command, arguments.threads);
     add_capture_options(command, arguments.request.overrides);
-    command.example = "nlos reconstruct data/letter.h5 -o volume.h5 --method lct";
 }
+
+}  // namespace
+
+extern const CommandRow kReconstructCommand{
+    "reconstruct",
+    "Reconstruct the hidden scene from a capture",
+    "nlos reconstruct data/letter.h5 -o volume.h5 --method lct",
+    declare_reconstruct};
 
 }  // namespace apps

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
-#include "apps/commands.h"
 #include "apps/commands/render_job.h"
 #include "apps/outcome.h"
 #include "apps/terminal.h"
@@ -24,8 +23,8 @@ struct RenderArguments {
 };
 
 constexpr std::array<Shorthand, 6> kRenderShorthands{
-    {{"--method", "render.method", "NAME", "Estimator (default auto)"},
-     {"--samples", "render.samples", "N", "Candidate paths per pair (default 256)"},
+    {{"--method", "render.method", "NAME", "Estimator"},
+     {"--samples", "render.samples", "N", "Candidate paths per pair"},
      {"--seconds",
       "render.seconds",
       "S",
@@ -34,11 +33,8 @@ constexpr std::array<Shorthand, 6> kRenderShorthands{
       "render.target_error",
       "E",
       "Render until the relative L2 error over all of H is below this"},
-     {"--max-bounces",
-      "render.max_bounces",
-      "K",
-      "Bounces, both on the relay wall included (default 3)"},
-     {"--seed", "render.seed", "N", "Seed of the random numbers (default 0)"}}};
+     {"--max-bounces", "render.max_bounces", "K", "Bounces, both on the relay wall included"},
+     {"--seed", "render.seed", "N", "Seed of the random numbers"}}};
 
 void note(const renderer::RenderResult& result, const std::string& output) {
     note_written({output, result.capture.scan.camera ? with_suffix(output, ".png") : ""});
@@ -109,11 +105,8 @@ void run(const RenderArguments& arguments) {
           result.seconds);
 }
 
-}  // namespace
-
-void add_render_command(CLI::App& app) {
-    const auto [command, arguments] =
-        add_command<RenderArguments>(app, "render", "Simulate the transients a scan records", run);
+void declare_render(Command& command) {
+    auto& arguments = command.runs<RenderArguments>(run);
     command.settings = core::settings_help(renderer::SceneDescription{});
     add_file_option(command, "SCENE", arguments.scene, "Scene description (.json)")->required();
     add_output_option(command, arguments.output, "Capture to write (.h5, .npz, .exr, .mat)")
@@ -129,7 +122,13 @@ void add_render_command(CLI::App& app) {
                      "Also print what the run did: estimators, excluded objects, shifts and why "
                      "they were rejected");
     add_set_option(command, arguments.overrides);
-    command.example = "nlos render scenes/letter/scene.json -o letter.h5";
 }
+
+}  // namespace
+
+extern const CommandRow kRenderCommand{"render",
+                                       "Simulate the transients a scan records",
+                                       "nlos render scenes/letter/scene.json -o letter.h5",
+                                       declare_render};
 
 }  // namespace apps

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/capture_options.h"
-#include "apps/commands.h"
 #include "apps/outcome.h"
 #include "apps/progress_bar.h"
 #include "apps/report/report.h"
@@ -80,11 +79,8 @@ void run_view(const ViewArguments& arguments) {
     print("wrote {}{}\n", page, opened ? "" : "; open it in a browser");
 }
 
-}  // namespace
-
-void add_report_command(CLI::App& app) {
-    const auto [command, arguments] = add_command<ReportArguments>(
-        app, "report", "Make one self-contained page of a folder of results", run_report);
+void declare_report(Command& command) {
+    auto& arguments = command.runs<ReportArguments>(run_report);
     add_folder_option(command, "DIR", arguments.folder, "Folder of captures, volumes and metrics")
         ->required();
     add_output_option(command, arguments.output, "Page to write (.html)")->required();
@@ -93,12 +89,10 @@ void add_report_command(CLI::App& app) {
                     arguments.options.scene,
                     "Scene with the truth, if not the one that the results name (.json)");
     add_size_option(command, arguments.options);
-    command.example = "nlos report data -o report.html";
 }
 
-void add_view_command(CLI::App& app) {
-    const auto [command, arguments] = add_command<ViewArguments>(
-        app, "view", "Show captures, volumes and scenes as a page in the browser", run_view);
+void declare_view(Command& command) {
+    auto& arguments = command.runs<ViewArguments>(run_view);
     command.settings = core::settings_help(CaptureOptions{});
     add_file_option(command,
                     "FILE",
@@ -109,7 +103,18 @@ void add_view_command(CLI::App& app) {
     command.add_flag("--no-browser", arguments.keep_closed, "Only write the page");
     add_size_option(command, arguments.options);
     add_capture_options(command, arguments.overrides);
-    command.example = "nlos view data/letter.h5 scenes/letter/scene.json --no-browser";
 }
+
+}  // namespace
+
+extern const CommandRow kReportCommand{"report",
+                                       "Make one self-contained page of a folder of results",
+                                       "nlos report data -o report.html",
+                                       declare_report};
+extern const CommandRow kViewCommand{
+    "view",
+    "Show captures, volumes and scenes as a page in the browser",
+    "nlos view data/letter.h5 scenes/letter/scene.json --no-browser",
+    declare_view};
 
 }  // namespace apps

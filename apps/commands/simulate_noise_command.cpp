@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/capture_options.h"
-#include "apps/commands.h"
 #include "apps/outcome.h"
 #include "apps/progress_bar.h"
 #include "apps/terminal.h"
@@ -108,11 +107,8 @@ void run(const NoiseArguments& arguments) {
           most);
 }
 
-}  // namespace
-
-void add_simulate_noise_command(CLI::App& app) {
-    const auto [command, arguments] = add_command<NoiseArguments>(
-        app, "simulate-noise", "Turn a capture into what a detector counts", run);
+void declare_simulate_noise(Command& command) {
+    auto& arguments = command.runs<NoiseArguments>(run);
     command.settings = core::settings_help(NoiseOptions{});
     add_file_option(command, "CAPTURE", arguments.capture, "Capture in any readable format")
         ->required();
@@ -125,9 +121,14 @@ void add_simulate_noise_command(CLI::App& app) {
                      "firmware cuts included");
     add_threads_option(command, arguments.threads);
     add_capture_options(command, arguments.overrides);
-    command.example =
-        "nlos simulate-noise data/letter.h5 -o noisy.h5 "
-        "--photons-per-point 1000 --jitter-fwhm-ps 60";
 }
+
+}  // namespace
+
+extern const CommandRow kSimulateNoiseCommand{"simulate-noise",
+                                              "Turn a capture into what a detector counts",
+                                              "nlos simulate-noise data/letter.h5 -o noisy.h5 "
+                                              "--photons-per-point 1000 --jitter-fwhm-ps 60",
+                                              declare_simulate_noise};
 
 }  // namespace apps

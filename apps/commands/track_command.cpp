@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 #include "apps/capture_options.h"
-#include "apps/commands.h"
 #include "apps/commands/track_job.h"
 #include "apps/outcome.h"
 #include "apps/terminal.h"
@@ -38,11 +37,8 @@ void run(const TrackRequest& given) {
           static_cast<double>(summary.frames) / std::max(summary.seconds, 1e-9));
 }
 
-}  // namespace
-
-void add_track_command(CLI::App& app) {
-    const auto [command, request] = add_command<TrackRequest>(
-        app, "track", "Track hidden targets with a histogram camera", run);
+void declare_track(Command& command) {
+    auto& request = command.runs<TrackRequest>(run);
     command.settings = core::settings_help(WithCapture<calib::TrackSettings>{});
     add_file_option(command,
                     "FILES",
@@ -60,8 +56,14 @@ void add_track_command(CLI::App& app) {
                     "Picture to write (.png, .svg, .pdf): plan, histograms and model");
     command.add_flag("--smooth", request.smooth, "Use later frames too, once all are there");
     add_capture_options(command, request.overrides);
-    command.example =
-        "nlos track data/walk/counts.h5 data/walk/track.json -o track.json --picture track.png";
 }
+
+}  // namespace
+
+extern const CommandRow kTrackCommand{
+    "track",
+    "Track hidden targets with a histogram camera",
+    "nlos track data/walk/counts.h5 data/walk/track.json -o track.json --picture track.png",
+    declare_track};
 
 }  // namespace apps

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "apps/bench/tables.h"
 #include "apps/report/result_cards.h"
+#include "apps/tables/tables.h"
 #include "renderer/core/settings.h"
 
 #include <string>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
-#include "apps/commands.h"
 #include "apps/outcome.h"
 #include "apps/progress_bar.h"
 #include "apps/sweep/sweep.h"
@@ -23,6 +22,7 @@ struct SweepArguments {
     std::string sweep;
     std::string folder;
     std::string shard;
+    const CLI::Option* slurm_option = nullptr;
     std::vector<std::string> slurm;  ///< none or one
     std::vector<std::string> overrides;
     int threads = 0;
@@ -58,11 +58,11 @@ void print_summary(const SweepPlan& plan, const core::Json& rows, const SweepArg
           summary.num_failed > 0 ? fmt::format(", {} of them failed", summary.num_failed) : "");
 }
 
-void run(const SweepArguments& arguments, bool wants_script) {
+void run(const SweepArguments& arguments) {
     const WorkShare share = read_work_share(arguments.shard);
     const core::ThreadLimit threads(arguments.threads);
     const SweepPlan plan(arguments.sweep, arguments.overrides);
-    if (wants_script) return print_script(arguments, plan);
+    if (arguments.slurm_option->count() > 0) return print_script(arguments, plan);
     const SweepResults results(plan, arguments.folder);
     SweepProgress done;
     {
@@ -90,33 +90,36 @@ void run(const SweepArguments& arguments, bool wants_script) {
           plan.num_runs());
 }
 
-}  // namespace
-
-void add_sweep_command(CLI::App& app) {
-    Command& command =
-        add_command(app, "sweep", "Render, reconstruct and compare over a grid of settings");
+void declare_sweep(Command& command) {
+    auto& arguments = command.runs<SweepArguments>(run);
     command.settings = core::settings_help(SweepSettings{});
-    const auto arguments = std::make_shared<SweepArguments>();
-    add_file_option(command, "SWEEP", arguments->sweep, "Scene and grid of settings (.json)")
+    add_file_option(command, "SWEEP", arguments.sweep, "Scene and grid of settings (.json)")
         ->required();
     add_output_folder_option(command,
-                             arguments->folder,
+                             arguments.folder,
                              "Folder of results; what it holds of this sweep is not done again")
         ->required();
     command.add_option("--shard",
-                       arguments->shard,
+                       arguments.shard,
                        "I/N: do part I, from 0, of N (default: that of the Slurm array task, or "
                        "all)");
-    CLI::Option* slurm =
-        command.add_option("--slurm",
-                           arguments->slurm,
-                           "Only print a script for sbatch, an array of TASKS (default: one per "
-                           "capture)");
-    slurm->type_name("TASKS")->expected(0, 1);
-    add_threads_option(command, arguments->threads);
-    add_set_option(command, arguments->overrides);
-    command.example = "nlos sweep data/sweep.json -o out/sweep";
-    command.callback([arguments, slurm] { run(*arguments, slurm->count() > 0); });
+    arguments.slurm_option =
+        command
+            .add_option("--slurm",
+                        arguments.slurm,
+                        "Only print a script for sbatch, an array of TASKS (default: one per "
+                        "capture)")
+            ->type_name("TASKS")
+            ->expected(0, 1);
+    add_threads_option(command, arguments.threads);
+    add_set_option(command, arguments.overrides);
 }
+
+}  // namespace
+
+extern const CommandRow kSweepCommand{"sweep",
+                                      "Render, reconstruct and compare over a grid of settings",
+                                      "nlos sweep data/sweep.json -o out/sweep",
+                                      declare_sweep};
 
 }  // namespace apps

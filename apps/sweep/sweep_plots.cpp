@@ -13,7 +13,7 @@ namespace {
 
 using core::Json;
 
-constexpr std::size_t kMostCurves = 10;  // as many as gnuplot has colours
+constexpr std::size_t kMostCurves = 10;  // as many as there are colours
 constexpr std::size_t kMostTicks = 12;
 constexpr double kWideRange = 5.0;
 
@@ -135,11 +135,11 @@ Pictures pictures_of(const SweepSettings& sweep, const Json& rows, const SweepPl
 }
 
 /// The lines of all curves and, dashed across all of x, what null gives each.
-std::vector<PlotLine> lines_of(const Curves& curves, double least_x, double most_x) {
-    std::vector<PlotLine> lines;
-    std::vector<PlotLine> limits;
+std::vector<nlos::PlotLine> lines_of(const Curves& curves, double least_x, double most_x) {
+    std::vector<nlos::PlotLine> lines;
+    std::vector<nlos::PlotLine> limits;
     for (const auto& [title, curve] : curves) {
-        PlotLine line{title, {}, {}};
+        nlos::PlotLine line{title};
         for (const auto& [x, mean] : curve) {
             if (x) {
                 line.add(*x, mean.value());
@@ -147,7 +147,7 @@ std::vector<PlotLine> lines_of(const Curves& curves, double least_x, double most
                 limits.push_back({"",
                                   {least_x, most_x},
                                   {mean.value(), mean.value()},
-                                  LineStyle::Limit,
+                                  nlos::LineStyle::Limit,
                                   static_cast<int>(lines.size())});
             }
         }
@@ -158,23 +158,25 @@ std::vector<PlotLine> lines_of(const Curves& curves, double least_x, double most
 }
 
 /// Logarithmic for what is positive and spans a wide range.
-AxisScale scale_for(const std::vector<double>& values) {
+nlos::AxisScale scale_for(const std::vector<double>& values) {
     const auto [least, most] = std::ranges::minmax(values);
-    return least > 0.0 && most > kWideRange * least ? AxisScale::Logarithmic : AxisScale::Linear;
+    return least > 0.0 && most > kWideRange * least ? nlos::AxisScale::Logarithmic
+                                                    : nlos::AxisScale::Linear;
 }
 
 /// Lengths and times differ by factors; shares, decibels and angles by differences.
-AxisScale y_scale_for(const std::string& metric, const std::vector<PlotLine>& lines) {
-    if (!metric.ends_with("_m") && !metric.starts_with("seconds")) return AxisScale::Linear;
+nlos::AxisScale y_scale_for(const std::string& metric, const std::vector<nlos::PlotLine>& lines) {
+    if (!metric.ends_with("_m") && !metric.starts_with("seconds")) return nlos::AxisScale::Linear;
     std::vector<double> values;
-    for (const PlotLine& line : lines) values.insert(values.end(), line.y.begin(), line.y.end());
+    for (const nlos::PlotLine& line : lines)
+        values.insert(values.end(), line.y.begin(), line.y.end());
     return scale_for(values);
 }
 
 /// Nothing where no two numbers along x have results.
-std::optional<Plot> plot_of(const std::string& title,
-                            const Curves& curves,
-                            const SweepPlot& wanted) {
+std::optional<nlos::Plot> plot_of(const std::string& title,
+                                  const Curves& curves,
+                                  const SweepPlot& wanted) {
     std::set<double> numbers;
     for (const auto& [name, curve] : curves) {
         for (const auto& [number, mean] : curve) {
@@ -183,7 +185,7 @@ std::optional<Plot> plot_of(const std::string& title,
     }
     if (numbers.size() < 2) return std::nullopt;
     const std::vector<double> x(numbers.begin(), numbers.end());
-    Plot plot;
+    nlos::Plot plot;
     plot.title = title;
     plot.x_label = last_part(wanted.against);
     plot.y_label = wanted.metric;
@@ -217,8 +219,8 @@ void check_plots(const SweepSettings& sweep, const std::string& where) {
     }
 }
 
-std::map<std::string, Plot> plots_of(const SweepSettings& sweep, const Json& rows) {
-    std::map<std::string, Plot> plots;
+std::map<std::string, nlos::Plot> plots_of(const SweepSettings& sweep, const Json& rows) {
+    std::map<std::string, nlos::Plot> plots;
     for (const SweepPlot& wanted : wanted_plots(sweep)) {
         std::string name = fmt::format("sweep_{}_by_{}", wanted.metric, wanted.against);
         std::ranges::replace(name, '.', '_');

@@ -105,7 +105,7 @@ SweepSummary write_summary(const SweepPlan& plan, const Json& rows, const std::s
         summary.warnings.push_back(fmt::format(
             "the runs are of {} versions of the program, see sweep.csv", programs.size()));
     }
-    const std::map<std::string, Plot> plots = plots_of(plan.settings(), rows);
+    const std::map<std::string, nlos::Plot> plots = plots_of(plan.settings(), rows);
     Json json;
     json["program"] = version_text();
     json["sweep"] = core::write_value(plan.settings());
@@ -118,10 +118,11 @@ SweepSummary write_summary(const SweepPlan& plan, const Json& rows, const std::s
     json["headline"] = headline.columns;
     json["runs"] = rows;
     core::write_text_file((path / "sweep.csv").string(), csv_text(rows));
-    const bool are_drawn = std::ranges::all_of(plots, [&](const auto& named) {
-        return draw_plot(named.second, (path / named.first).string());
-    });
-    if (!are_drawn) summary.warnings.emplace_back("gnuplot is not there, so no plot was drawn");
+    for (const auto& [name, plot] : plots) {
+        for (const char* format : {".svg", ".png"}) {
+            nlos::write_panels((path / (name + format)).string(), {plot}, 1);
+        }
+    }
     core::write_text_file((path / "sweep.json").string(), core::json_text(json));
     return summary;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "apps/bench/gnuplot.h"
-#include "apps/bench/tables.h"
 #include "apps/sweep/sweep_plan.h"
+#include "apps/tables/tables.h"
+#include "nlos/plots/plot.h"
 
 #include <map>
 #include <string>
@@ -42,6 +42,6 @@ void check_plots(const SweepSettings& sweep, const std::string& where);
 /// several plots. Values of `null` along x are dashed lines across.
 ///
 /// rows   as SweepResults has them
-std::map<std::string, Plot> plots_of(const SweepSettings& sweep, const core::Json& rows);
+std::map<std::string, nlos::Plot> plots_of(const SweepSettings& sweep, const core::Json& rows);
 
 }  // namespace apps

@@ -143,4 +143,13 @@ TEST_F(CommandLine, FilesThatDoNotFitTogetherAreRefused) {
     expect_bad_input("report " + file("nowhere") + " -o " + file("r.html"), "nowhere");
 }
 
+TEST_F(CommandLine, BenchWithoutItsProgramSaysSo) {
+    fs::copy_file(NLOS_PROGRAM, file("nlos"));
+    const std::string command =
+        "'" + file("nlos") + "' bench render -o out 2>'" + file("err.txt") + "'";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
+    EXPECT_EQ(file_bytes(file("err.txt")),
+              file("nlos-bench") + ": is missing; it is built and installed together with nlos\n");
+}
+
 }  // namespace

@@ -145,9 +145,11 @@ TEST_F(Output, FitsSayWhichStageTheyAreIn) {
 // Benchmarks know the scenes that come with the program.
 TEST_F(Output, BenchmarksRunFromAnyFolder) {
     const Outcome bench =
-        run("bench shift -o out --shifts 20 --quiet --json", folder_.path().string());
+        run("bench render -o out --part third_bounce --scene scenes/letter/scene.json --repeats 1 "
+            "--quiet --json",
+            folder_.path().string());
     EXPECT_EQ(bench.status, 0) << bench.err;
-    EXPECT_EQ(last_line(bench)["written"][0], "out/bench_shift.json");
+    EXPECT_EQ(last_line(bench)["written"][0], "out/bench_render.json");
 }
 
 TEST_F(Output, InfoOnGeometryNamesRolesVelocitiesAndCameras) {

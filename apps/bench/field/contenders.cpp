@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/field/contenders.h"
 
+#include "apps/run_program.h"
 #include "renderer/core/data_folder.h"
 #include "renderer/core/error.h"
 #include "renderer/core/output_file.h"
@@ -25,9 +26,7 @@ double number_at(const core::Json& json, const char* key) {
 }  // namespace
 
 Contenders::Contenders(const std::string& peers, std::string folder, double limit_s)
-    : program_(fs::read_symlink("/proc/self/exe").string()),
-      folder_(std::move(folder)),
-      limit_s_(limit_s) {
+    : program_(program_beside("nlos")), folder_(std::move(folder)), limit_s_(limit_s) {
     if (peers.empty()) return;
     python_ = (fs::path(peers) / "bin" / "python").string();
     if (!fs::exists(python_)) {

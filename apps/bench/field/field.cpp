@@ -4,11 +4,10 @@
 #include "apps/bench/field/losses.h"
 #include "apps/bench/field/reconstruction_table.h"
 #include "apps/bench/field/rendering_table.h"
-#include "apps/bench/gnuplot.h"
-#include "apps/commands.h"
 #include "apps/outcome.h"
 #include "apps/report/report.h"
 #include "apps/terminal.h"
+#include "nlos/plots/plot.h"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -17,39 +16,38 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
 namespace apps {
 namespace {
 
-void add(PlotLine& line, double x, std::optional<double> y) {
+void add(nlos::PlotLine& line, double x, std::optional<double> y) {
     if (y && *y > 0.0) line.add(x, *y);
 }
 
 /// Depth error against CPU time and against counts per point, for either pattern, by the end of
 /// the pictures' names.
-std::map<std::string, Plot> reconstruction_plots(
+std::map<std::string, nlos::Plot> reconstruction_plots(
     const std::vector<ReconstructionSummary>& summaries) {
-    std::map<std::string, Plot> plots;
+    std::map<std::string, nlos::Plot> plots;
     for (const ReconstructionSummary& s : summaries) {
         if (!s.cpu_s) continue;
         const std::string of = fmt::format("{}, {} x {} points", s.pattern, s.points, s.points);
         const std::string suffix = fmt::format("_{}_{}", s.pattern, s.points);
         const std::string title = s.program + " " + s.method;
-        Plot& time = plots["_time" + suffix];
+        nlos::Plot& time = plots["_time" + suffix];
         time.title = "Error against time, without noise, " + of;
         time.x_label = "CPU time of the calculation [s]";
         time.y_label = "mean depth error, median of the scenes [mm]";
         add(line_named(title, time), *s.cpu_s, s.clean_mae_mm);
         if (!s.mae_mm_3) continue;
-        Plot& photons = plots["_photons" + suffix];
+        nlos::Plot& photons = plots["_photons" + suffix];
         photons.title = "Photons against accuracy, " + of;
         photons.x_label = "counts per wall point";
         photons.y_label = time.y_label;
         photons.x_ticks = {3, 20, 100};
-        PlotLine& line = line_named(title, photons);
+        nlos::PlotLine& line = line_named(title, photons);
         add(line, 3, s.mae_mm_3);
         add(line, 20, s.mae_mm_20);
         add(line, 100, s.mae_mm_100);
@@ -61,11 +59,11 @@ std::map<std::string, Plot> reconstruction_plots(
 }
 
 /// Error against CPU time for every scene and order, likewise.
-std::map<std::string, Plot> rendering_plots(const std::vector<RenderingRow>& rows) {
-    std::map<std::string, Plot> plots;
+std::map<std::string, nlos::Plot> rendering_plots(const std::vector<RenderingRow>& rows) {
+    std::map<std::string, nlos::Plot> plots;
     for (const RenderingRow& row : rows) {
         if (!row.cpu_s) continue;
-        Plot& plot = plots[fmt::format("_render_{}_{}", row.scene, row.max_bounces)];
+        nlos::Plot& plot = plots[fmt::format("_render_{}_{}", row.scene, row.max_bounces)];
         plot.title =
             fmt::format("Error against time, {}, up to {} bounces", row.scene, row.max_bounces);
         plot.x_label = "CPU time of the rendering [s]";
@@ -174,24 +172,25 @@ BenchResult measure_field(const FieldSettings& settings,
     return result;
 }
 
-void run(const BenchOutput& output, const FieldSettings& settings) {
+struct FieldArguments {
+    BenchOutput output;
+    FieldSettings settings;
+};
+
+void run(const FieldArguments& arguments) {
+    const auto& [output, settings] = arguments;
     const std::filesystem::path folder = output.folder;
     run_benchmark(output, "field", [&](const core::Progress& progress) {
-        return measure_field(settings, (folder / "files").string(), progress);
+        return measure_field(arguments.settings, (folder / "files").string(), progress);
     });
     const std::string page = (folder / "report.html").string();
     write_report(page, read_results_folder(output.folder), {});
     print_written({page});
 }
 
-}  // namespace
-
-void add_bench_field_command(CLI::App& bench) {
-    const auto state = std::make_shared<std::pair<BenchOutput, FieldSettings>>();
-    FieldSettings& settings = state->second;
-    Command& command =
-        add_command(bench, "field", "Our methods and installed peers on the same files");
-    add_output_options(command, state->first);
+void declare_field_bench(Command& command) {
+    auto& [output, settings] = command.runs<FieldArguments>(run);
+    add_output_options(command, output);
     add_setting(command, "--part", settings.part, "What to measure")
         ->check(one_of({"all", "reconstruct", "render", "captures"}));
     command
@@ -211,8 +210,13 @@ void add_bench_field_command(CLI::App& bench) {
                 {8, 256});
     add_setting(command, "--limit-s", settings.limit_s, "CPU time one run may take [s]");
     command.add_flag("--quick", settings.quick, "The letter alone: a few minutes");
-    command.example = "nlos bench field -o out/field --quick --sensing-points 16";
-    command.callback([state] { run(state->first, state->second); });
 }
+
+}  // namespace
+
+extern const CommandRow kFieldBench{"field",
+                                    "Our methods and installed peers on the same files",
+                                    "nlos bench field -o out/field --quick --sensing-points 16",
+                                    declare_field_bench};
 
 }  // namespace apps

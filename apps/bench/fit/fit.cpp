@@ -3,7 +3,6 @@
 
 #include "apps/bench/command.h"
 #include "apps/bench/fit/fit_trials.h"
-#include "apps/commands.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/render.h"
@@ -263,7 +262,8 @@ const std::vector<BenchPart>& bench_parts() {
     return kParts;
 }
 
-void declare(CLI::App& command, FitBenchSettings& settings) {
+void declare_fit_bench(Command& command) {
+    auto& settings = add_benchmark(command, measure_fit);
     std::vector<std::string> names;
     for (const BenchPart& part : bench_parts()) names.push_back(part.name);
     add_setting(command, "--trials", settings.trials, "Fits per row of the table", {1, 10000});
@@ -284,7 +284,7 @@ BenchResult measure_fit(const FitBenchSettings& settings, const core::Progress& 
     }
     BenchResult result{core::write_value(bench)};
     if (bench.points.empty()) return result;
-    Plot plot{"Error against time of fits", "CPU time [s]", "position error [m]", {}};
+    nlos::Plot plot{"Error against time of fits", "CPU time [s]", "position error [m]", {}};
     for (const FitBenchPoint& point : bench.points) {
         plot.lines.push_back({point.choice, {point.cpu_seconds}, {point.position_rms_m}});
     }
@@ -293,13 +293,9 @@ BenchResult measure_fit(const FitBenchSettings& settings, const core::Progress& 
     return result;
 }
 
-void add_bench_fit_command(CLI::App& bench) {
-    add_benchmark<FitBenchSettings>(bench,
-                                    {"fit",
-                                     "Fitting and calibration against their targets",
-                                     "nlos bench fit -o out/bench --trials 1"},
-                                    declare,
-                                    measure_fit);
-}
+extern const CommandRow kFitBench{"fit",
+                                  "Fitting and calibration against their targets",
+                                  "nlos bench fit -o out/bench --trials 1",
+                                  declare_fit_bench};
 
 }  // namespace apps

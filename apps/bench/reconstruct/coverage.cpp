@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/command.h"
-#include "apps/bench/gnuplot.h"
 #include "apps/bench/reconstruct/reconstruct.h"
 #include "apps/bench/reconstruct/reconstruct_trials.h"
-#include "apps/commands.h"
 #include "calib/statistics/median.h"
+#include "nlos/plots/plot.h"
 #include "renderer/scene/ground_truth.h"
 
 #include <fmt/format.h>
@@ -148,25 +147,25 @@ void add_rows(const std::string& method, const ProbabilityTally& tally, core::Js
 }
 
 /// What is stated against what is true, with the line where both are equal.
-Plot probability_plot(const core::Json& rows) {
-    Plot plot{"Columns that are surface", "stated probability", "true share", {}};
-    plot.x_scale = AxisScale::Linear;
-    plot.y_scale = AxisScale::Linear;
+nlos::Plot probability_plot(const core::Json& rows) {
+    nlos::Plot plot{"Columns that are surface", "stated probability", "true share", {}};
+    plot.x_scale = nlos::AxisScale::Linear;
+    plot.y_scale = nlos::AxisScale::Linear;
     for (const core::Json& row : rows) {
         line_named(row["method"], plot).add(row["stated"], row["surface"]);
     }
-    plot.lines.push_back({"as stated", {0.0, 1.0}, {0.0, 1.0}, LineStyle::Limit});
+    plot.lines.push_back({"as stated", {0.0, 1.0}, {0.0, 1.0}, nlos::LineStyle::Limit});
     return plot;
 }
 
 /// Share of the depths within an interval over the signal, with the share that it states.
-Plot interval_plot(const core::Json& rows, const char* within, double stated) {
-    Plot plot{fmt::format("Depths within their intervals of {:g} %", 100.0 * stated),
-              "counts in the brightest bin",
-              "share of the depths",
-              {}};
-    plot.y_scale = AxisScale::Linear;
-    PlotLine limit{"as stated", {}, {}, LineStyle::Limit};
+nlos::Plot interval_plot(const core::Json& rows, const char* within, double stated) {
+    nlos::Plot plot{fmt::format("Depths within their intervals of {:g} %", 100.0 * stated),
+                    "counts in the brightest bin",
+                    "share of the depths",
+                    {}};
+    plot.y_scale = nlos::AxisScale::Linear;
+    nlos::PlotLine limit{"as stated", {}, {}, nlos::LineStyle::Limit};
     for (const core::Json& row : rows) {
         line_named(row["method"], plot).add(row["peak_counts"], row[within]);
         if (row["method"] == rows.front()["method"]) limit.add(row["peak_counts"], stated);
@@ -175,7 +174,8 @@ Plot interval_plot(const core::Json& rows, const char* within, double stated) {
     return plot;
 }
 
-void declare_coverage(CLI::App& command, CoverageBenchSettings& settings) {
+void declare_coverage_bench(Command& command) {
+    auto& settings = add_benchmark(command, measure_coverage);
     add_setting(command, "--surfaces", settings.surfaces, "Random surfaces", {1, 10000});
     add_setting(command, "--first", settings.first, "Number of the first of them", {0, 1000000});
     add_setting(command, "--methods", settings.methods, "Methods, each with its own settings");
@@ -223,14 +223,10 @@ BenchResult measure_coverage(const CoverageBenchSettings& settings,
             {}};
 }
 
-void add_bench_coverage_command(CLI::App& bench) {
-    add_benchmark<CoverageBenchSettings>(
-        bench,
-        {"coverage",
-         "Whether stated deviations of depth and probabilities of surfaces hold",
-         "nlos bench coverage -o out/bench --surfaces 1 --methods lct --peaks 100"},
-        declare_coverage,
-        measure_coverage);
-}
+extern const CommandRow kCoverageBench{
+    "coverage",
+    "Whether stated deviations of depth and probabilities of surfaces hold",
+    "nlos bench coverage -o out/bench --surfaces 1 --methods lct --peaks 100",
+    declare_coverage_bench};
 
 }  // namespace apps

@@ -2,7 +2,6 @@
 #include "apps/bench/command.h"
 #include "apps/bench/reconstruct/reconstruct.h"
 #include "apps/bench/reconstruct/reconstruct_trials.h"
-#include "apps/commands.h"
 #include "apps/scene_truth.h"
 #include "nlos/compare/compare.h"
 #include "nlos/detector/detector.h"
@@ -118,7 +117,8 @@ core::Json score_of(const core::Capture& capture,
             {"seconds", result.seconds}};
 }
 
-void declare(CLI::App& command, LongRangeBenchSettings& settings) {
+void declare_long_range_bench(Command& command) {
+    auto& settings = add_benchmark(command, measure_long_range);
     add_setting(command, "--photons", settings.photons, "Photons per wall point");
     add_setting(command, "--spots", settings.spots_m, "Widths of the spot on the wall [m]");
     add_setting(command, "--methods", settings.methods, "Reconstruction methods");
@@ -145,14 +145,10 @@ BenchResult measure_long_range(const LongRangeBenchSettings& settings,
     return {{{"scores", scores}}};
 }
 
-void add_bench_long_range_command(CLI::App& bench) {
-    add_benchmark<LongRangeBenchSettings>(
-        bench,
-        {"long_range",
-         "A letter under a spot and a response wider than its strokes, as from a kilometre away",
-         "nlos bench long_range -o out/bench --photons 5000 --spots 0.08"},
-        declare,
-        measure_long_range);
-}
+extern const CommandRow kLongRangeBench{
+    "long_range",
+    "A letter under a spot and a response wider than its strokes, as from a kilometre away",
+    "nlos bench long_range -o out/bench --photons 5000 --spots 0.08",
+    declare_long_range_bench};
 
 }  // namespace apps

@@ -2,7 +2,6 @@
 #include "apps/bench/command.h"
 #include "apps/bench/reconstruct/reconstruct_trials.h"
 #include "apps/bench/scene.h"
-#include "apps/commands.h"
 #include "apps/scene_truth.h"
 #include "nlos/compare/compare.h"
 #include "nlos/detector/detector.h"
@@ -122,13 +121,14 @@ core::Json search_snr(const Range& range, double peak_counts, int repeats) {
             {"best_mask_iou_best", best.mask_iou_best}};
 }
 
-Plot plot_of(const std::vector<NoiseCurve>& curves,
-             const std::string& scene,
-             const std::string& title,
-             double NoiseScore::*value) {
-    Plot plot{title + ", " + scene, "counts in the brightest bin", title, {}};
+nlos::Plot plot_of(const std::vector<NoiseCurve>& curves,
+                   const std::string& scene,
+                   const std::string& title,
+                   double NoiseScore::*value) {
+    nlos::Plot plot{title + ", " + scene, "counts in the brightest bin", title, {}};
     for (const NoiseCurve& curve : curves) {
-        plot.lines.push_back(line_of(curve.method, curve.scores, &NoiseScore::peak_counts, value));
+        plot.lines.push_back(
+            nlos::line_of(curve.method, curve.scores, &NoiseScore::peak_counts, value));
     }
     return plot;
 }
@@ -163,20 +163,17 @@ BenchResult measure_noise(const NoiseBenchSettings& settings, const core::Progre
             {}};
 }
 
-void declare(CLI::App& command, NoiseBenchSettings& settings) {
+void declare_noise_bench(Command& command) {
+    auto& settings = add_benchmark(command, measure_noise);
     add_setting(command, "--scene", settings.scene, "Scene description")->type_name("FILE");
     add_setting(command, "--repeats", settings.repeats, "Seeds per figure", {1, 1000});
 }
 
 }  // namespace
 
-void add_bench_noise_command(CLI::App& bench) {
-    add_benchmark<NoiseBenchSettings>(bench,
-                                      {"noise",
-                                       "Every reconstruction method against the number of photons",
-                                       "nlos bench noise -o out/bench"},
-                                      declare,
-                                      measure_noise);
-}
+extern const CommandRow kNoiseBench{"noise",
+                                    "Every reconstruction method against the number of photons",
+                                    "nlos bench noise -o out/bench",
+                                    declare_noise_bench};
 
 }  // namespace apps

@@ -2,40 +2,40 @@
 #include "apps/bench/reconstruct/reconstruct.h"
 
 #include "apps/bench/command.h"
-#include "apps/commands.h"
 #include "renderer/core/parallel.h"
 
 namespace apps {
 namespace {
 
-PlotLine scaling_line(const ReconstructScaling& curve, double ScalingPoint::*value) {
-    return line_of(curve.of == "voxels" ? curve.method + ", voxels" : curve.method,
-                   curve.points,
-                   &ScalingPoint::values,
-                   value);
+nlos::PlotLine scaling_line(const ReconstructScaling& curve, double ScalingPoint::*value) {
+    return nlos::line_of(curve.of == "voxels" ? curve.method + ", voxels" : curve.method,
+                         curve.points,
+                         &ScalingPoint::values,
+                         value);
 }
 
-Plot scaling_plot(const std::vector<ReconstructScaling>& curves,
-                  const std::string& title,
-                  double ScalingPoint::*value) {
-    Plot plot{title + " against size", "values of the capture, or voxels", title, {}};
+nlos::Plot scaling_plot(const std::vector<ReconstructScaling>& curves,
+                        const std::string& title,
+                        double ScalingPoint::*value) {
+    nlos::Plot plot{title + " against size", "values of the capture, or voxels", title, {}};
     for (const ReconstructScaling& curve : curves) {
         plot.lines.push_back(scaling_line(curve, value));
     }
     return plot;
 }
 
-void add_limits(const std::vector<ReconstructScaling>& curves, Plot& plot) {
+void add_limits(const std::vector<ReconstructScaling>& curves, nlos::Plot& plot) {
     for (std::size_t i = 0; i < curves.size(); ++i) {
-        PlotLine& line =
+        nlos::PlotLine& line =
             plot.lines.emplace_back(scaling_line(curves[i], &ScalingPoint::limit_seconds));
         line.title += ", FFTs or sums alone";
-        line.style = LineStyle::Limit;
+        line.style = nlos::LineStyle::Limit;
         line.limit_of = static_cast<int>(i);
     }
 }
 
-void declare(CLI::App& command, ReconstructBenchSettings& settings) {
+void declare_reconstruct_bench(Command& command) {
+    auto& settings = add_benchmark(command, measure_reconstruct);
     add_setting(command, "--scenes", settings.scenes_folder, "Folder of the scenes")
         ->type_name("DIR");
     add_file_option(
@@ -69,7 +69,7 @@ BenchResult measure_reconstruct(const ReconstructBenchSettings& settings,
     if (wants("scaling")) {
         const auto scaling = measure_scaling(settings, progress.part(0.6, 1.0));
         figures["scaling"] = core::write_value(scaling);
-        Plot& time = result.plots["_time"];
+        nlos::Plot& time = result.plots["_time"];
         time = scaling_plot(scaling, "CPU time [s]", &ScalingPoint::cpu_seconds);
         add_limits(scaling, time);
         result.plots["_memory"] = scaling_plot(scaling, "memory [bytes]", &ScalingPoint::bytes);
@@ -77,13 +77,9 @@ BenchResult measure_reconstruct(const ReconstructBenchSettings& settings,
     return result;
 }
 
-void add_bench_reconstruct_command(CLI::App& bench) {
-    add_benchmark<ReconstructBenchSettings>(bench,
-                                            {"reconstruct",
-                                             "Time, memory and accuracy of every method",
-                                             "nlos bench reconstruct -o out/bench"},
-                                            declare,
-                                            measure_reconstruct);
-}
+extern const CommandRow kReconstructBench{"reconstruct",
+                                          "Time, memory and accuracy of every method",
+                                          "nlos bench reconstruct -o out/bench",
+                                          declare_reconstruct_bench};
 
 }  // namespace apps

@@ -2,7 +2,6 @@
 #include "apps/bench/command.h"
 #include "apps/bench/reconstruct/reconstruct.h"
 #include "apps/bench/reconstruct/reconstruct_trials.h"
-#include "apps/commands.h"
 #include "renderer/core/random.h"
 #include "renderer/scene/ground_truth.h"
 
@@ -115,7 +114,8 @@ core::Json row_of(const Search& search, const WeightsBenchSettings& settings) {
             {"error_over_best", error_over_best}};
 }
 
-void declare_weights(CLI::App& command, WeightsBenchSettings& settings) {
+void declare_weights_bench(Command& command) {
+    auto& settings = add_benchmark(command, measure_weights);
     add_setting(command, "--surfaces", settings.surfaces, "Random surfaces", {1, 10000});
     add_setting(command, "--first", settings.first, "Number of the first of them", {0, 1000000});
     add_setting(command, "--pattern", settings.pattern, "Scan: single, confocal or exhaustive");
@@ -149,14 +149,10 @@ BenchResult measure_weights(const WeightsBenchSettings& settings, const core::Pr
     return {{{"searches", rows}}};
 }
 
-void add_bench_weights_command(CLI::App& bench) {
-    add_benchmark<WeightsBenchSettings>(
-        bench,
-        {"weights",
-         "The solver's own weight of total variation against the best of a search",
-         "nlos bench weights -o out/bench --surfaces 1 --peaks 100 --observed 1"},
-        declare_weights,
-        measure_weights);
-}
+extern const CommandRow kWeightsBench{
+    "weights",
+    "The solver's own weight of total variation against the best of a search",
+    "nlos bench weights -o out/bench --surfaces 1 --peaks 100 --observed 1",
+    declare_weights_bench};
 
 }  // namespace apps

@@ -3,7 +3,6 @@
 #include "apps/bench/render/gates.h"
 #include "apps/bench/render/render.h"
 #include "apps/bench/render/third_bounce.h"
-#include "apps/commands.h"
 
 #include <fmt/core.h>
 
@@ -79,11 +78,11 @@ std::vector<Target> render_targets(const core::Json& figures) {
     return targets;
 }
 
-Plot gate_plot(const GateTable& table) {
-    Plot plot{fmt::format("Equal time, {}, {} bounces", table.scene, table.max_bounces),
-              "gate width [mm]",
-              "relative MSE after 1 s",
-              {}};
+nlos::Plot gate_plot(const GateTable& table) {
+    nlos::Plot plot{fmt::format("Equal time, {}, {} bounces", table.scene, table.max_bounces),
+                    "gate width [mm]",
+                    "relative MSE after 1 s",
+                    {}};
     for (const GateBench& gate : table.gates) {
         if (gate.gate_mm == 0.0) continue;
         line_named(gate.method, plot).add(gate.gate_mm, gate.rel_mse);
@@ -91,8 +90,8 @@ Plot gate_plot(const GateTable& table) {
     return plot;
 }
 
-Plot scaling_plot(const std::vector<RenderScaling>& all) {
-    Plot plot{"Scaling", "triangles, wall points, bins, bounces, threads", "time [s]", {}};
+nlos::Plot scaling_plot(const std::vector<RenderScaling>& all) {
+    nlos::Plot plot{"Scaling", "triangles, wall points, bins, bounces, threads", "time [s]", {}};
     for (const RenderScaling& scaling : all) {
         const std::string title = fmt::format("{}, {}", scaling.method, scaling.of);
         plot.lines.push_back({title, scaling.sizes, scaling.cpu_seconds});
@@ -100,28 +99,28 @@ Plot scaling_plot(const std::vector<RenderScaling>& all) {
         plot.lines.push_back({scaling.of == "threads" ? title + ", shared" : title + ", rays alone",
                               scaling.sizes,
                               scaling.limit_seconds,
-                              LineStyle::Limit,
+                              nlos::LineStyle::Limit,
                               static_cast<int>(plot.lines.size()) - 1});
     }
     return plot;
 }
 
-Plot curves_plot(const std::string& scene,
-                 const std::vector<BenchCurve>& curves,
-                 double ray_limit_seconds) {
-    Plot plot{"Error against time, " + scene, "CPU time [s]", "relative L2 error", {}};
+nlos::Plot curves_plot(const std::string& scene,
+                       const std::vector<BenchCurve>& curves,
+                       double ray_limit_seconds) {
+    nlos::Plot plot{"Error against time, " + scene, "CPU time [s]", "relative L2 error", {}};
     for (const BenchCurve& curve : curves) {
-        plot.lines.push_back(
-            line_of(curve.method, curve.points, &BenchPoint::cpu_seconds, &BenchPoint::rel_l2));
+        plot.lines.push_back(nlos::line_of(
+            curve.method, curve.points, &BenchPoint::cpu_seconds, &BenchPoint::rel_l2));
     }
     const auto ray_seconds = [&](const BenchPoint& point) {
         return ray_limit_seconds * point.samples;
     };
-    PlotLine limit =
-        line_of("path, its rays alone", curves.front().points, ray_seconds, &BenchPoint::rel_l2);
-    limit.style = LineStyle::Limit;
+    nlos::PlotLine limit = nlos::line_of(
+        "path, its rays alone", curves.front().points, ray_seconds, &BenchPoint::rel_l2);
+    limit.style = nlos::LineStyle::Limit;
     limit.limit_of = 0;
-    const PlotLine front = pareto_front(plot.lines);
+    const nlos::PlotLine front = pareto_front(plot.lines);
     plot.lines.push_back(limit);
     plot.lines.push_back(front);
     return plot;
@@ -141,7 +140,8 @@ void measure_gates(const RenderBenchSettings& settings,
     }
 }
 
-void declare(CLI::App& command, RenderBenchSettings& settings) {
+void declare_render_bench(Command& command) {
+    auto& settings = add_benchmark(command, measure_render);
     add_setting(command, "--scene", settings.scene, "Scene description")->type_name("FILE");
     add_setting(command, "--camera-scene", settings.camera_scene, "Image to try gates on")
         ->type_name("FILE");
@@ -211,12 +211,9 @@ BenchResult measure_render(const RenderBenchSettings& settings, const core::Prog
     return result;
 }
 
-void add_bench_render_command(CLI::App& bench) {
-    add_benchmark<RenderBenchSettings>(
-        bench,
-        {"render", "Every estimator on one scene", "nlos bench render -o out/bench --quick"},
-        declare,
-        measure_render);
-}
+extern const CommandRow kRenderBench{"render",
+                                     "Every estimator on one scene",
+                                     "nlos bench render -o out/bench --quick",
+                                     declare_render_bench};
 
 }  // namespace apps

@@ -1,21 +1,47 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/render/sequences.h"
-
 #include "apps/bench/command.h"
 #include "apps/bench/scene.h"
 #include "apps/bench/statistics.h"
-#include "apps/commands.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
+#include "renderer/frame_sequence.h"
 #include "renderer/render.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace apps {
 namespace {
+
+/// A gate that moves over a scene, or stands still before one that moves, as frames.
+struct SequenceCase {
+    std::string name;
+    std::string scene;
+    std::vector<std::string> overrides;  ///< of scene.json
+    double gate_start_m = 0.0;
+    double gate_width_mm = 10.0;
+    double gate_step_mm = 10.0;  ///< per frame; 0: the gate stands still
+    int num_frames = 60;
+    int num_bins = 1;  ///< of that width; more of them stand still
+    int reference_samples = 20'000;
+    double frame_s = 0.0;  ///< time between frames, in which objects move [s]
+
+    bool is_static() const { return gate_step_mm == 0.0 && frame_s == 0.0; }
+};
+
+/// What is rendered of a sequence, with a method's overrides of scene.json.
+struct SequenceSetup {
+    SequenceSetup(const SequenceCase& sequence, const std::vector<std::string>& overrides);
+
+    renderer::SceneDescription description;
+    core::Scan scan;
+    std::shared_ptr<const renderer::Scene> scene;
+};
+
+using SequenceFrames = std::vector<core::Transient>;
 
 // Frames before this share of a sequence are left out of the means: reuse has to settle.
 constexpr double kSequenceSettlingShare = 1.0 / 6.0;
@@ -110,8 +136,6 @@ core::Json run_method(const SequenceCase& sequence,
             {"rel_mse_of_frames", errors.rel_mse_of_frames()}};
 }
 
-}  // namespace
-
 SequenceSetup::SequenceSetup(const SequenceCase& sequence,
                              const std::vector<std::string>& overrides) {
     std::vector<std::string> all = sequence.overrides;
@@ -127,6 +151,8 @@ SequenceSetup::SequenceSetup(const SequenceCase& sequence,
     scene = std::make_shared<const renderer::Scene>(renderer::load_scene(description, scan));
 }
 
+/// The frames of a sequence to little noise, third bounces of scans integrated: sums of the bins of
+/// one long histogram, or frame by frame where objects move.
 SequenceFrames reference_frames(const SequenceCase& sequence, std::uint64_t seed) {
     SequenceSetup setup(sequence, {});
     renderer::RenderSettings& settings = setup.description.render;
@@ -146,15 +172,14 @@ SequenceFrames reference_frames(const SequenceCase& sequence, std::uint64_t seed
     return gates_of_histogram(setup, sequence);
 }
 
-PlotLine line_of_frames(const std::string& title, const std::vector<double>& errors) {
-    PlotLine line{title, {}, {}};
+// Errors of frames as a line over their numbers from 1 on.
+nlos::PlotLine line_of_frames(const std::string& title, const std::vector<double>& errors) {
+    nlos::PlotLine line{title, {}, {}};
     for (const double error : errors) {
         line.add(static_cast<double>(line.x.size() + 1), std::max(1e-9, error));
     }
     return line;
 }
-
-namespace {
 
 /// Runs methods over a sequence and measures them against two independent references, whose
 /// product has no bias from their noise.
@@ -287,12 +312,12 @@ std::vector<SequenceMethod> standard_methods(const SequenceCase& sequence) {
 }
 
 // Error over frames, a plot per sequence.
-void add_plot(const core::Json& row, std::map<std::string, Plot>& plots) {
+void add_plot(const core::Json& row, std::map<std::string, nlos::Plot>& plots) {
     const std::string sequence = row["sequence"];
     std::string suffix = "_" + sequence;
     std::replace_if(
         suffix.begin(), suffix.end(), [](char c) { return std::isalnum(c) == 0; }, '_');
-    Plot& plot = plots[suffix];
+    nlos::Plot& plot = plots[suffix];
     plot.title = sequence;
     plot.x_label = "frame";
     plot.y_label = "relative MSE";
@@ -310,7 +335,8 @@ BenchResult measure(const SequenceArguments& arguments, const core::Progress& pr
     return result;
 }
 
-void declare(CLI::App& command, SequenceArguments& arguments) {
+void declare_sequences_bench(Command& command) {
+    auto& arguments = add_benchmark(command, measure);
     add_setting(command, "--scene", arguments.scan, "Scan")->type_name("FILE");
     add_setting(command, "--image-scene", arguments.image, "Camera")->type_name("FILE");
     CLI::Option* resolution = add_setting(
@@ -327,13 +353,9 @@ void declare(CLI::App& command, SequenceArguments& arguments) {
 
 }  // namespace
 
-void add_bench_sequences_command(CLI::App& bench) {
-    add_benchmark<SequenceArguments>(bench,
-                                     {"sequences",
-                                      "Frame sequences: reuse of paths against none",
-                                      "nlos bench sequences -o out/bench --only 'scan'"},
-                                     declare,
-                                     measure);
-}
+extern const CommandRow kSequencesBench{"sequences",
+                                        "Frame sequences: reuse of paths against none",
+                                        "nlos bench sequences -o out/bench --only 'scan'",
+                                        declare_sequences_bench};
 
 }  // namespace apps

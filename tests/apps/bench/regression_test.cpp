@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/regression.h"
 
-#include "apps/bench/gnuplot.h"
-
 #include <gtest/gtest.h>
 
 namespace apps {
@@ -74,14 +72,6 @@ TEST(BenchRegression, RowsAreFoundByNameWhereverTheyStand) {
     const BenchRegression against = compare_benches(earlier_run(), now);
     EXPECT_TRUE(against.changes.empty());
     EXPECT_EQ(against.num_missing, 1);
-}
-
-TEST(ParetoFront, LeavesOutWhatIsBeatenInBoth) {
-    const PlotLine front = pareto_front(
-        {{"a", {1.0, 3.0, 9.0}, {5.0, 4.0, 1.0}, {}}, {"b", {2.0, 4.0}, {2.0, 3.0}, {}}});
-    EXPECT_EQ(front.x, (std::vector{1.0, 2.0, 9.0}));
-    EXPECT_EQ(front.y, (std::vector{5.0, 2.0, 1.0}));
-    EXPECT_EQ(front.style, LineStyle::Limit);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // nlos track as its users call it: frames from files and as lines, and what it refuses.
-#include "apps/bench/track/simulated_walk.h"
 #include "renderer/core/settings.h"
+#include "tests/apps/commands/simulated_walk.h"
 #include "tests/support/command_line.h"
 
 #include <gtest/gtest.h>
@@ -27,13 +27,13 @@ class TrackCommand : public CommandLine {
  protected:
     // A short walk as lines, with its truth beside it.
     void write_walk() {
-        apps::WalkSettings settings;
+        test_support::WalkSettings settings;
         settings.frames = 30;
         settings.first = 14;
         settings.last = 30;
         settings.sensor_moves = false;
         settings.seed = 5;
-        const apps::SimulatedWalk walk = apps::simulate_walk(settings);
+        const test_support::SimulatedWalk walk = test_support::simulate_walk(settings);
         Json truth = Json::array();
         std::string lines;
         for (std::size_t f = 0; f < walk.frames.size(); ++f) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What `nlos manual` writes is read by the programs that it is for: man, bash and zsh.
+#include "apps/commands.h"
 #include "tests/support/command_line.h"
 
 #include <gtest/gtest.h>
@@ -69,7 +70,16 @@ TEST_F(Manual, HasAPageForEveryCommand) {
     EXPECT_NE(render.find("(at least 1"), std::string::npos) << "ranges";
     EXPECT_NE(render.find("(auto|\\:path|\\:third_bounce"), std::string::npos) << "closed sets";
     EXPECT_NE(render.find("\\fB\\-\\-target\\-error\\fR"), std::string::npos);
-    EXPECT_NE(page("nlos-bench").find("\\fBnlos\\-bench\\-track\\fR(1)"), std::string::npos);
+    EXPECT_NE(page("nlos-bench").find("\\fBnlos\\-bench\\-fit\\fR(1)"), std::string::npos);
+}
+
+TEST_F(Manual, EveryCommandOfTheListHasAPageAndIsCompleted) {
+    const Names known = offered({"nlos", ""});
+    for (const apps::CommandRow* row : apps::all_commands()) {
+        EXPECT_FALSE(page(std::string("nlos-") + row->name).empty()) << row->name;
+        EXPECT_EQ(known.count(row->name), 1U) << row->name;
+    }
+    EXPECT_EQ(known.size(), apps::all_commands().size());
 }
 
 TEST_F(Manual, PagesAreCleanRoff) {

@@ -80,17 +80,6 @@ TEST_F(SweepCommand, TheReportNamesRunsThatFailed) {
     EXPECT_NE(file_bytes(file("page.html")).find("<b>Run 1</b> failed: "), std::string::npos);
 }
 
-TEST_F(SweepCommand, WithoutGnuplotOnlyPlotsAreMissing) {
-    make_sweep();
-    const std::string command = "cd '" + folder_.path().string() +
-                                "'; PATH=/nowhere '" NLOS_PROGRAM
-                                "' sweep sweep.json -o out >out.txt 2>err.txt";
-    ASSERT_EQ(std::system(command.c_str()), 0);
-    EXPECT_NE(file_bytes(file("err.txt")).find("warning: gnuplot is not there"), std::string::npos);
-    EXPECT_TRUE(fs::exists(file("out/sweep.csv")));
-    EXPECT_FALSE(fs::exists(file("out/sweep_seconds_by_scene_scan_sensing_points.png")));
-}
-
 TEST_F(SweepCommand, BadInputIsOneLineBeforeAnythingRuns) {
     make_sweep();
     const std::string sweep = "sweep " + file("sweep.json") + " -o " + file("out");

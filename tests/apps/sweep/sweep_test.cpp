@@ -183,14 +183,14 @@ TEST(SweepPlots, DrawMeansOverRepeatsAgainstNumbers) {
     const auto plots = apps::plots_of(sweep, rows);
     ASSERT_EQ(plots.size(), 1U);
     EXPECT_EQ(plots.begin()->first, "sweep_fscore_by_noise_photons");
-    const apps::Plot& plot = plots.begin()->second;
-    EXPECT_EQ(plot.x_scale, apps::AxisScale::Logarithmic);
-    EXPECT_EQ(plot.y_scale, apps::AxisScale::Linear);
+    const nlos::Plot& plot = plots.begin()->second;
+    EXPECT_EQ(plot.x_scale, nlos::AxisScale::Logarithmic);
+    EXPECT_EQ(plot.y_scale, nlos::AxisScale::Linear);
     ASSERT_EQ(plot.lines.size(), 4U);
     EXPECT_EQ(plot.lines[1].title, "method bp");
     EXPECT_EQ(plot.lines[1].x, (std::vector<double>{10.0, 1000.0}));
     EXPECT_EQ(plot.lines[1].y, (std::vector<double>{10.5, 1000.5}));
-    EXPECT_EQ(plot.lines[3].style, apps::LineStyle::Limit);
+    EXPECT_EQ(plot.lines[3].style, nlos::LineStyle::Limit);
     EXPECT_EQ(plot.lines[3].limit_of, 1);
     EXPECT_EQ(plot.lines[3].y, (std::vector<double>{3.5, 3.5}));
 }

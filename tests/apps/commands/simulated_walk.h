@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace apps {
+namespace test_support {
 
 /// What walks, and before what.
 struct WalkSettings {
@@ -41,4 +41,4 @@ struct SimulatedWalk {
 /// surface behind, crosstalk, dark counts and ambient light, drawn from Poisson distributions.
 SimulatedWalk simulate_walk(const WalkSettings& settings);
 
-}  // namespace apps
+}  // namespace test_support

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/track/simulated_walk.h"
+#include "tests/apps/commands/simulated_walk.h"
 
 #include "nlos/detector/count_sampling.h"
 #include "renderer/core/capture/instrument_response.h"
@@ -10,7 +10,7 @@
 #include <array>
 #include <cmath>
 
-namespace apps {
+namespace test_support {
 namespace {
 
 using core::Vec3;
@@ -239,4 +239,4 @@ SimulatedWalk simulate_walk(const WalkSettings& settings) {
     return walk;
 }
 
-}  // namespace apps
+}  // namespace test_support

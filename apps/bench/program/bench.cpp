@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include "apps/bench/program/bench.h"
+
 #include "apps/bench/command.h"
 #include "apps/bench/fit/fit.h"
 #include "apps/bench/reconstruct/reconstruct.h"
 #include "apps/bench/render/render.h"
-#include "apps/commands.h"
 #include "apps/outcome.h"
 #include "apps/terminal.h"
 #include "renderer/core/output_file.h"
@@ -50,29 +51,38 @@ void run_all(const AllArguments& arguments) {
     print_written({path.string()});
 }
 
+void declare_all_benches(Command& command) {
+    auto& arguments = command.runs<AllArguments>(run_all);
+    add_output_options(command, arguments.output);
+    command.add_flag(
+        "--quick", arguments.quick, "Fewer and smaller runs: minutes instead of an hour");
+}
+
+constexpr CommandRow kAllBenches{"all",
+                                 "These three: render, reconstruct, fit",
+                                 "nlos bench all -o out/bench --quick",
+                                 declare_all_benches};
+
 }  // namespace
 
-void add_bench_command(CLI::App& app) {
-    Command& command = add_command(app, "bench", "Measure speed against error");
+// Each stands in the file of its name.
+extern const CommandRow kRenderBench, kReconstructBench, kFitBench, kNoiseBench, kCoverageBench,
+    kWeightsBench, kLongRangeBench, kSequencesBench, kFieldBench;
+
+void declare_bench(Command& command) {
     command.require_subcommand(1);
-    command.example = "nlos bench reconstruct -o out/bench --part scaling --largest 32";
-    add_bench_render_command(command);
-    add_bench_reconstruct_command(command);
-    add_bench_fit_command(command);
-    const auto [all, arguments] =
-        add_command<AllArguments>(command, "all", "These three: render, reconstruct, fit", run_all);
-    add_output_options(all, arguments.output);
-    all.add_flag("--quick", arguments.quick, "Fewer and smaller runs: minutes instead of an hour");
-    all.example = "nlos bench all -o out/bench --quick";
-    add_bench_noise_command(command);
-    add_bench_coverage_command(command);
-    add_bench_weights_command(command);
-    add_bench_long_range_command(command);
-    add_bench_comparisons_command(command);
-    add_bench_sequences_command(command);
-    add_bench_shift_command(command);
-    add_bench_track_command(command);
-    add_bench_field_command(command);
+    for (const CommandRow* row : {&kRenderBench,
+                                  &kReconstructBench,
+                                  &kFitBench,
+                                  &kAllBenches,
+                                  &kNoiseBench,
+                                  &kCoverageBench,
+                                  &kWeightsBench,
+                                  &kLongRangeBench,
+                                  &kSequencesBench,
+                                  &kFieldBench}) {
+        add_command(command, *row);
+    }
 }
 
 }  // namespace apps

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/tables.h"
+#include "apps/tables/tables.h"
 
 #include "apps/bench/output.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/tables.h"
+#include "apps/tables/tables.h"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
