@@ -51,7 +51,8 @@ void delay_observed(const std::vector<double>& delays_m, core::Capture& capture)
 
 }  // namespace
 
-std::vector<double> pair_offsets(const AppliedCalibration& calibration, const core::Scan& scan) {
+std::vector<double> pair_offsets(const AppliedCalibration& calibration,
+                                 const core::WallScan& scan) {
     std::vector<double> offsets;
     const auto& offset = calibration.opl_offset_m;
     for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
@@ -61,7 +62,7 @@ std::vector<double> pair_offsets(const AppliedCalibration& calibration, const co
     return offsets;
 }
 
-void replace_points(const AppliedCalibration& calibration, core::Scan& scan) {
+void replace_points(const AppliedCalibration& calibration, core::WallScan& scan) {
     const auto replace = [&](core::WallPoints& points) {
         if (points.size() != calibration.points_m.size()) {
             throw core::Error("--calibration",
@@ -85,8 +86,8 @@ core::Capture apply_calibration(const AppliedCalibration& calibration,
                                 const core::Capture& capture) {
     core::Capture result = capture;
     drop_other_histograms(result);
-    replace_points(calibration, result.scan);
-    std::vector<double> delays = pair_offsets(calibration, result.scan);
+    replace_points(calibration, result.scan.wall());
+    std::vector<double> delays = pair_offsets(calibration, result.scan.wall());
     const double first = *std::min_element(delays.begin(), delays.end());
     for (double& delay : delays) delay = first - delay;
     result.time_axis.opl_start_m -= first;

@@ -89,11 +89,11 @@ AppliedCalibration read_calibration(const std::string& path);
 AppliedCalibration applied_calibration(const core::Json& json, const std::string& where);
 
 /// Path length of each pair beside that between wall points: half of both points' offsets.
-std::vector<double> pair_offsets(const AppliedCalibration& calibration, const core::Scan& scan);
+std::vector<double> pair_offsets(const AppliedCalibration& calibration, const core::WallScan& scan);
 
 /// Puts the calibrated points into a scan of as many.
 /// throws   core::Error when the numbers of points differ
-void replace_points(const AppliedCalibration& calibration, core::Scan& scan);
+void replace_points(const AppliedCalibration& calibration, core::WallScan& scan);
 
 /// A capture between wall points: histograms moved by a part of a bin and more, points replaced.
 /// Variance, orders, velocities and frames are left out.

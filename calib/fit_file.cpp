@@ -121,7 +121,7 @@ bool is_fit_file(const std::string& path) {
 Json fitted_scene_json(const FitInput& input, const std::string& geometry_file) {
     renderer::SceneDescription scene = input.scene;
     renderer::refer_to_gltf(geometry_file, scene);
-    renderer::describe_scan(input.capture.scan, scene.scan);
+    renderer::describe_scan(input.capture.scan.wall(), scene.scan);
     scene.time_axis = {input.capture.time_axis};
     return core::write_value(scene);
 }

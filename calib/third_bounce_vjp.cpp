@@ -43,13 +43,6 @@ void check_mesh(const core::TriangleMesh& mesh, const std::vector<double>& albed
     }
 }
 
-void check_scan(const core::Scan& scan) {
-    if (scan.camera) {
-        throw Error(kWhere, "found a camera", "scans of wall points have gradients");
-    }
-    validate(scan, kWhere);
-}
-
 // Of [pair][item]; empty when there is nothing.
 template <class T>
 std::span<T> part_of_pair(std::span<T> all, std::size_t pair, std::size_t num_items) {
@@ -88,13 +81,13 @@ void for_each_round(std::size_t num_pairs,
 
 ThirdBounceVjp::ThirdBounceVjp(core::TriangleMesh mesh,
                                std::vector<double> albedo,
-                               core::Scan scan,
+                               core::WallScan scan,
                                const core::TimeAxis& axis,
                                const ThirdBounceVjpSettings& settings,
                                const core::Progress& progress)
     : mesh_((check_mesh(mesh, albedo), std::move(mesh))),
       albedo_(std::move(albedo)),
-      scan_((check_scan(scan), std::move(scan))),
+      scan_((core::validate(scan), std::move(scan))),
       axis_(axis),
       settings_(settings),
       tree_(mesh_) {

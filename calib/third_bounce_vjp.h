@@ -50,7 +50,7 @@ class ThirdBounceVjp {
     ///            beyond 200,000 surface elements
     ThirdBounceVjp(core::TriangleMesh mesh,
                    std::vector<double> albedo,
-                   core::Scan scan,
+                   core::WallScan scan,
                    const core::TimeAxis& axis,
                    const ThirdBounceVjpSettings& settings,
                    const core::Progress& progress = {});
@@ -74,7 +74,7 @@ class ThirdBounceVjp {
 
     core::TriangleMesh mesh_;
     std::vector<double> albedo_;
-    core::Scan scan_;
+    core::WallScan scan_;
     core::TimeAxis axis_;
     ThirdBounceVjpSettings settings_;
     FacetTree tree_;

@@ -55,10 +55,10 @@ PlateauShares plateau_shares(const ReconstructSettings& settings, bool has_noise
 ///
 /// scan   of the capture; all but confocal grids leave shells before surfaces
 VolumeErrors volume_errors(const ReconstructSettings& settings,
-                           const core::Scan& scan,
+                           const core::WallScan& scan,
                            bool has_noise) {
     const PlateauShares shares = plateau_shares(settings, has_noise);
-    const bool is_confocal_grid = scan.pattern == core::ScanPattern::Confocal && scan.sensing.grid;
+    const bool is_confocal_grid = scan.is_confocal() && scan.sensing.grid;
     const double front = is_confocal_grid ? kFront : 0.0;
     if (uses_wave(settings)) return {VolumeScale::Magnitude, 0.115, 0.3, 7.0, 0.0, shares};
     switch (settings.method) {
@@ -81,7 +81,7 @@ VolumeErrors volume_errors(const ReconstructSettings& settings,
 /// that of the scene measured again.
 ///
 /// scan   of the capture
-void take_surface(const core::Scan& scan, const Volume* again, Reconstruction& result) {
+void take_surface(const core::WallScan& scan, const Volume* again, Reconstruction& result) {
     Surface surface = find_surface(result.volume,
                                    again,
                                    volume_errors(result.settings, scan, again != nullptr),
@@ -184,7 +184,7 @@ class Job {
             again = functions_of(settings).run(
                 input_with(histograms, second_run_), settings, num_slabs);
         }
-        take_surface(capture_.scan, again ? &*again : nullptr, result_);
+        take_surface(capture_.scan.wall(), again ? &*again : nullptr, result_);
         return std::move(result_);
     }
 
@@ -338,10 +338,7 @@ Reconstruction reconstruct(const core::Capture& capture,
     const core::Stopwatch watch;
     validate(settings);
     core::validate(capture, "capture");
-    if (capture.scan.camera) {
-        throw core::Error(
-            "capture", "found the image of a camera", "must be a scan of points on a relay wall");
-    }
+    capture.scan.wall("capture");  // or throws
     Reconstruction result = Job(capture, settings, progress).run();
     result.seconds = watch.seconds();
     result.peak_bytes = core::peak_rss_bytes();

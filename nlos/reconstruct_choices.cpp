@@ -55,7 +55,7 @@ double default_depth_step_m(const core::TimeAxis& axis, const ReconstructSetting
 }
 
 /// Half the path lengths that the axis covers once device legs are taken off.
-std::array<double, 2> default_z_range(const core::Scan& scan, const core::TimeAxis& axis) {
+std::array<double, 2> default_z_range(const core::WallScan& scan, const core::TimeAxis& axis) {
     const auto [shortest_leg, longest_leg] = core::device_leg_range_m(scan);
     const double begin = std::max(0.0, 0.5 * (axis.opl_start_m - longest_leg));
     const double end = 0.5 * (axis.opl_end_m() - shortest_leg);
@@ -74,7 +74,7 @@ bool uses_wave(const ReconstructSettings& settings) {
            (settings.method == Method::Fbp && settings.filter == FbpFilter::Phasor);
 }
 
-bool makes_up_for_falloff(const core::Scan& scan, const ReconstructSettings& settings) {
+bool makes_up_for_falloff(const core::WallScan& scan, const ReconstructSettings& settings) {
     return uses_wave(settings) && scan.pattern != core::ScanPattern::Confocal;
 }
 
@@ -132,7 +132,7 @@ Measurement take_measurement(const PreparedCapture& prepared,
     return measurement;
 }
 
-void choose_axes(const core::Scan& scan,
+void choose_axes(const core::WallScan& scan,
                  const core::TimeAxis& axis,
                  const WallFrame& wall,
                  ReconstructSettings& settings,

@@ -38,10 +38,10 @@ bool uses_wave(const ReconstructSettings& settings);
 /// Whether histograms are multiplied by range^power against the falloff of light. A confocal scan
 /// lights every voxel from all over the wall; there the factor would only let far wall points
 /// outvote near ones.
-bool makes_up_for_falloff(const core::Scan& scan, const ReconstructSettings& settings);
+bool makes_up_for_falloff(const core::WallScan& scan, const ReconstructSettings& settings);
 
 /// Columns at the scan's points or evenly over its footprint, depths at the bins' ranges.
-void choose_axes(const core::Scan& scan,
+void choose_axes(const core::WallScan& scan,
                  const core::TimeAxis& axis,
                  const WallFrame& wall,
                  ReconstructSettings& settings,

@@ -26,8 +26,9 @@ std::uint64_t seed_of_frame(std::uint64_t seed, int frame) {
 
 // What the sensor of a scan sees in a frame; other scans stay what they are.
 core::Scan pose_sensor(const core::Scan& scan, int frame) {
-    if (!scan.sensor || scan.sensor->poses.empty()) return scan;
-    core::SensorSetup setup = *scan.sensor;
+    const auto* zones = scan.as<core::SensorScan>();
+    if (zones == nullptr || zones->setup->poses.empty()) return scan;
+    core::SensorSetup setup = *zones->setup;
     setup.pose = setup.pose_of_frame(static_cast<std::size_t>(frame));
     setup.poses.clear();
     return core::scan_of_zones(setup);
@@ -36,7 +37,7 @@ core::Scan pose_sensor(const core::Scan& scan, int frame) {
 }  // namespace
 
 FrameRenderer make_frame_renderer(const core::Scan& scan, const RenderSettings& settings) {
-    if (settings.method == Estimator::Restir && !scan.sensor)
+    if (settings.method == Estimator::Restir && scan.as<core::SensorScan>() == nullptr)
         return make_restir_frame_renderer(scan, settings);
     return [](const Frame& frame, const core::Scan& frame_scan, const core::Progress& progress) {
         const core::Scan posed = pose_sensor(frame_scan, frame.index);
@@ -83,9 +84,11 @@ RenderResult render_frames(std::shared_ptr<const Scene> scene,
         if (i + 1 < frames.count && progress.should_stop()) sequence.interrupted = true;
     }
     sequence.capture.sequence = std::move(recorded);
-    if (scan.sensor) {
-        sequence.capture.scan.sensor = scan.sensor;
-        core::observe_live_zones(*scan.sensor, sequence.capture);
+    if (const auto* zones = scan.as<core::SensorScan>()) {
+        core::SensorScan last = *sequence.capture.scan.as<core::SensorScan>();
+        last.setup = zones->setup;  // with the poses of all frames
+        sequence.capture.scan = last;
+        core::observe_live_zones(*zones->setup, sequence.capture);
     }
     return sequence;
 }

@@ -39,6 +39,19 @@ std::vector<std::size_t> corners_of(const core::WallPoints& points) {
 
 // Pairs spread over the scan, and for wall points those at its corners, which have the longest
 // paths.
+void add_corners(const core::WallScan& scan, std::vector<std::size_t>& pairs) {
+    for (const std::size_t sensed : corners_of(scan.sensing)) {
+        if (!scan.is_exhaustive()) {
+            pairs.push_back(sensed);
+            continue;
+        }
+        for (const std::size_t lit : corners_of(scan.illumination)) {
+            pairs.push_back(lit * scan.sensing.size() + sensed);
+        }
+    }
+}
+void add_corners(const core::ImageScan&, std::vector<std::size_t>&) {}
+
 std::vector<std::size_t> some_pairs(const core::Scan& scan) {
     const std::size_t count = scan.num_pairs();
     std::vector<std::size_t> pairs;
@@ -48,16 +61,7 @@ std::vector<std::size_t> some_pairs(const core::Scan& scan) {
                             ? i
                             : static_cast<std::size_t>(place * static_cast<double>(count)));
     }
-    if (scan.camera) return pairs;
-    for (const std::size_t sensed : corners_of(scan.sensing)) {
-        if (scan.pattern != core::ScanPattern::Exhaustive) {
-            pairs.push_back(sensed);
-            continue;
-        }
-        for (const std::size_t lit : corners_of(scan.illumination)) {
-            pairs.push_back(lit * scan.sensing.size() + sensed);
-        }
-    }
+    scan.visit([&](const auto& kind) { add_corners(kind, pairs); });
     return pairs;
 }
 
@@ -103,10 +107,10 @@ std::array<double, 2> possible_lengths(const Scene& scene,
     return all;
 }
 
-// What no path of an image exceeds: the light, the camera and all facets lie in a box.
-double longest_path_of_image(const Scene& scene, const core::Scan& scan, int max_bounces) {
-    Eigen::AlignedBox3d box(scan.camera->position_m);
-    box.extend(scan.camera->light_position());
+// What no path exceeds: its ends and all facets lie in a box.
+double longest_path(const Scene& scene, const core::Scan& scan, int max_bounces) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& end : scan.path_ends()) box.extend(end);
     for (const Object& object : scene.objects()) {
         for (const Vec3& vertex : object.mesh.vertices) box.extend(vertex);
     }
@@ -148,8 +152,11 @@ double extent(const core::WallPoints& points, int rank) {
 }
 
 // Half the bin that would blur the farthest neighbours of the scan; 0 for images and single points.
-double resolving_bin_m(const core::Scan& scan, double depth_m) {
-    if (scan.camera || scan.sensing.size() < 2) return 0.0;
+double resolving_bin_m(const core::ImageScan&, double) {
+    return 0.0;
+}
+double resolving_bin_m(const core::WallScan& scan, double depth_m) {
+    if (scan.sensing.size() < 2) return 0.0;
     const auto count = static_cast<double>(scan.sensing.size());
     const double width = extent(scan.sensing, 0);
     const double height = std::max(extent(scan.sensing, 1), width / count);
@@ -201,12 +208,12 @@ std::optional<LightRange> find_light_range(const Scene& scene,
     const std::vector<std::size_t> pairs = some_pairs(scan);
     LightRange range;
     double longest = 0.0;  // path that the pilot run looks for
-    if (scan.camera) {
-        longest = longest_path_of_image(scene, scan, settings.max_bounces);
+    if (!scan.has_wall()) {
+        longest = longest_path(scene, scan, settings.max_bounces);
     } else {
         range.possible_m = possible_lengths(scene, sensor_pairs, pairs);
         if (range.possible_m[1] == 0.0) return LightRange{{0.0, 0.0}, {0.0, 1.0, 1}, {0.0}};
-        const double legs = core::device_leg_range_m(scan)[0];
+        const double legs = core::device_leg_range_m(scan.wall())[0];
         range.axis.opl_start_m = std::max(0.0, legs);
         // Each segment of a longer path is at most about as long as the longest of a third bounce.
         longest = range.possible_m[1] * 0.5 * (settings.max_bounces - 1);
@@ -214,7 +221,7 @@ std::optional<LightRange> find_light_range(const Scene& scene,
     range.axis.num_bins = kPilotBins;
     range.axis.bin_width_m = std::max(1e-9, longest - range.axis.opl_start_m) * 1.01 / kPilotBins;
     range.light = run_pilot(scene, sensor_pairs, pairs, range.axis, settings);
-    if (scan.camera) range.possible_m = range.without_tails(0.0);
+    if (!scan.has_wall()) range.possible_m = range.without_tails(0.0);
     return range;
 }
 
@@ -240,13 +247,14 @@ core::TimeAxis choose_time_axis(const std::optional<LightRange>& range,
         ends = {std::min(ends[0], later->possible_m[0]), std::max(ends[1], later->possible_m[1])};
         if (!later->is_dark()) sure_end = std::max(sure_end, later->without_tails(kTail)[1]);
     }
-    const double legs = scan.camera ? 0.0 : core::device_leg_range_m(scan)[0];
-    if (description.render.direct_return && !scan.camera) ends[0] = legs;
+    const double legs = scan.has_wall() ? core::device_leg_range_m(scan.wall())[0] : 0.0;
+    if (description.render.direct_return && scan.has_wall()) ends[0] = legs;
     ends[1] = std::max(ends[1], sure_end);
     const double margin = kMargin * (ends[1] - ends[0]);
     const double start = std::max(0.0, ends[0] - margin);
     double span = ends[1] + margin - start;
-    const double wanted = resolving_bin_m(scan, 0.5 * (middle - legs));
+    const double wanted =
+        scan.visit([&](const auto& kind) { return resolving_bin_m(kind, 0.5 * (middle - legs)); });
     double width = wanted > 0.0 ? std::min(wanted, span / kFewest) : span / 256.0;
     if (span > kMost * width) {
         span = std::max(kMost * width, sure_end + margin - start);

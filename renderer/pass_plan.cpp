@@ -28,7 +28,7 @@ int round_up_to_kinds(int samples) {
 }
 
 int max_samples_per_pass(const core::Scan& scan, const RenderSettings& settings) {
-    if (scan.camera || settings.variance) return kMaxSamplesPerShortPass;
+    if (!scan.has_wall() || settings.variance) return kMaxSamplesPerShortPass;
     const double fit = kMaxPathsPerPass / static_cast<double>(scan.num_pairs());
     return static_cast<int>(std::clamp<double>(fit, kMaxSamplesPerShortPass, kMaxSamplesPerPass));
 }

@@ -43,7 +43,7 @@ void require_possible(const RenderTask& task) {
                               "found third_bounce with velocity_axis",
                               "must be auto, path, ellipsoidal or restir: it knows no velocities");
         }
-        if (task.scan.camera) {
+        if (!task.scan.has_wall()) {
             throw core::Error("render.method",
                               "found third_bounce for a camera",
                               "must be auto or path: there are no wall points");
@@ -55,7 +55,7 @@ void require_possible(const RenderTask& task) {
                 "must be auto or path for such surfaces");
         }
     }
-    if (!task.axes.velocity || task.scan.camera) return;
+    if (!task.axes.velocity || !task.scan.has_wall()) return;
     for (const Object& object : task.scene.objects()) {
         if (object.role != Role::RelayWall || object.velocity_m_per_s.norm() == 0.0) continue;
         throw core::Error("velocity_axis",
@@ -78,13 +78,13 @@ RenderResult trace_paths(const RenderTask& task,
                          std::optional<ThirdBounceScope> scope,
                          const PrecomputedPart& precomputed) {
     PassWork work{nullptr, precomputed};
-    if (scope && (task.scan.camera || task.settings.max_bounces >= 3)) {
+    if (scope && (!task.scan.has_wall() || task.settings.max_bounces >= 3)) {
         work.tracer = std::make_shared<const PathTracer>(task.scene, task.settings, *scope);
     }
     RenderResult result =
         smooths(task, scope) ? render_smoothed(task, work) : render_passes(task, work);
     const int first = scope == ThirdBounceScope::NotIntegrable ? 4 : first_order(task.scan);
-    if (scope && (task.scan.camera || task.settings.max_bounces >= first)) {
+    if (scope && (!task.scan.has_wall() || task.settings.max_bounces >= first)) {
         result.sources.push_back({first, task.settings.max_bounces, Estimator::Path, "all"});
     }
     return result;
@@ -130,7 +130,7 @@ RenderResult integrate_and_trace(const RenderTask& task, double left_out) {
     if (seconds && !is_all) integration.seconds = kShareOfTime * *seconds;
     const double done = is_all ? 1.0 : 0.1;
     const ThirdBounce third = integrate_third_bounce(
-        task.scene, task.scan, task.axes.time, integration, task.progress.part(0.0, done));
+        task.scene, task.scan.wall(), task.axes.time, integration, task.progress.part(0.0, done));
     const core::Progress rest = task.progress.part(done, 1.0);
     RenderTask tracing{task.scene, task.scan, task.axes, task.settings, rest};
     if (seconds) {
@@ -166,14 +166,14 @@ RenderResult render(const Scene& scene,
                     const core::HistogramAxes& axes,
                     const RenderSettings& settings,
                     const core::Progress& progress) {
-    if (scan.sensor) {
+    if (const auto* zones = scan.as<core::SensorScan>()) {
         const auto render_points = [&](const Scene& part,
                                        const core::Scan& points,
                                        const RenderSettings& of_part,
                                        const core::Progress& of_points) {
             return render(part, points, axes, of_part, of_points);
         };
-        return render_zones(scene, scan, axes, settings, render_points, progress);
+        return render_zones(scene, *zones, axes, settings, render_points, progress);
     }
     RenderTask task{scene, scan, axes, settings, progress};
     require_possible(task);
@@ -181,9 +181,9 @@ RenderResult render(const Scene& scene,
     if (settings.method == Estimator::Restir) return render_restir(task);
     const auto left_out = leave_out_orders(task);
     const double left_out_error = left_out ? left_out->error : 0.0;
-    const bool integrates = settings.method != Estimator::Path && !scan.camera && !axes.velocity &&
-                            settings.max_bounces >= 3 && settings.gate == GateShape::Box &&
-                            surfaces_of(scene).integrable;
+    const bool integrates = settings.method != Estimator::Path && scan.has_wall() &&
+                            !axes.velocity && settings.max_bounces >= 3 &&
+                            settings.gate == GateShape::Box && surfaces_of(scene).integrable;
     RenderResult result =
         integrates ? integrate_and_trace(task, left_out_error)
                    : trace_paths(task, ThirdBounceScope::All, {nullptr, 0.0, left_out_error});

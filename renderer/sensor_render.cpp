@@ -26,13 +26,13 @@ constexpr int kDirectSubsamples = 32;
 
 /// Pairs of points, and how they make up the histograms of zones.
 struct PairSum {
-    core::Scan scan;                 ///< of points
+    core::WallScan scan;
     std::vector<double> lit;         ///< weights of illumination points
     std::vector<double> seen;        ///< weights of sensing points
     std::vector<std::size_t> zones;  ///< of the sensing points
 };
 
-PairSum empty_sum(const core::Scan& zones, core::ScanPattern pattern) {
+PairSum empty_sum(const core::WallScan& zones, core::ScanPattern pattern) {
     PairSum sum;
     sum.scan.pattern = pattern;
     sum.scan.opl_origin = core::OplOrigin::Device;
@@ -78,10 +78,10 @@ void append_slices(const PairSum& sum, int num_bins, std::vector<PairSum>& slice
 }
 
 /// What zones record of lit points and other points that they see.
-std::vector<PairSum> pairs_apart(const core::Scan& scan,
+std::vector<PairSum> pairs_apart(const core::SensorScan& scan,
                                  const SensorFootprints& footprints,
                                  int num_bins) {
-    const core::SensorSetup& setup = *scan.sensor;
+    const core::SensorSetup& setup = *scan.setup;
     const Vec3 hair = kHair_m * setup.wall.world_from_wall().linear().col(0);
     const bool floods = setup.model.illumination == core::SensorIllumination::Flood;
     std::vector<PairSum> sums;
@@ -101,7 +101,7 @@ std::vector<PairSum> pairs_apart(const core::Scan& scan,
 }
 
 /// What comes back to the points themselves.
-PairSum pairs_that_coincide(const core::Scan& scan, const SensorFootprints& footprints) {
+PairSum pairs_that_coincide(const core::SensorScan& scan, const SensorFootprints& footprints) {
     PairSum sum = empty_sum(scan, core::ScanPattern::Confocal);
     for (std::size_t zone = 0; zone < footprints.zones.size(); ++zone) {
         append_seen(footprints, zone, sum);
@@ -113,7 +113,7 @@ PairSum pairs_that_coincide(const core::Scan& scan, const SensorFootprints& foot
 }
 
 /// The scene with all that does not send light back black; nothing when nothing sends it back.
-std::optional<Scene> retroreflectors_of(const Scene& scene, const core::Scan& scan) {
+std::optional<Scene> retroreflectors_of(const Scene& scene, const core::SensorScan& scan) {
     SceneGeometry geometry;
     geometry.objects = scene.objects();
     bool any = false;
@@ -127,13 +127,13 @@ std::optional<Scene> retroreflectors_of(const Scene& scene, const core::Scan& sc
         }
     }
     if (!any) return std::nullopt;
-    return Scene(std::move(geometry), scan, scan.sensor->wall);
+    return Scene(std::move(geometry), scan, scan.setup->wall);
 }
 
 /// Renders sums of pairs, one after another, and adds up what the zones record.
 class ZoneRenderer {
  public:
-    ZoneRenderer(const core::Scan& scan,
+    ZoneRenderer(const core::SensorScan& scan,
                  const core::TimeAxis& axis,
                  const RenderSettings& settings,
                  const PointRenderer& render_points)
@@ -146,7 +146,7 @@ class ZoneRenderer {
     void add_retroreflectors(const Scene& scene,
                              const PairSum& sum,
                              const core::Progress& progress);
-    void add_direct_return(double wall_albedo);
+    void add_direct_return(core::SensorSetup setup, double wall_albedo);
     RenderResult result() { return std::move(result_); }
 
  private:
@@ -229,9 +229,8 @@ void ZoneRenderer::add_retroreflectors(const Scene& scene,
     settings_ = all;
 }
 
-void ZoneRenderer::add_direct_return(double wall_albedo) {
+void ZoneRenderer::add_direct_return(core::SensorSetup setup, double wall_albedo) {
     core::Capture& capture = result_.capture;
-    core::SensorSetup setup = *capture.scan.sensor;
     setup.subsamples = kDirectSubsamples;
     const SensorFootprints footprints = core::make_footprints(setup);
     for (std::size_t i = 0; i < footprints.zones.size(); ++i) {
@@ -267,13 +266,13 @@ void require_possible(const core::HistogramAxes& axes, const RenderSettings& set
 }  // namespace
 
 RenderResult render_zones(const Scene& scene,
-                          const core::Scan& scan,
+                          const core::SensorScan& scan,
                           const core::HistogramAxes& axes,
                           const RenderSettings& settings,
                           const PointRenderer& render_points,
                           const core::Progress& progress) {
     require_possible(axes, settings);
-    const SensorFootprints footprints = core::make_footprints(*scan.sensor);
+    const SensorFootprints footprints = core::make_footprints(*scan.setup);
     RenderSettings of_parts = settings;
     const std::vector<PairSum> sums = pairs_apart(scan, footprints, axes.time.num_bins);
     const std::optional<Scene> retroreflectors = retroreflectors_of(scene, scan);
@@ -291,9 +290,9 @@ RenderResult render_zones(const Scene& scene,
         renderer.add_retroreflectors(
             *retroreflectors, pairs_that_coincide(scan, footprints), next());
     }
-    if (settings.direct_return) renderer.add_direct_return(scene.wall_albedo());
+    if (settings.direct_return) renderer.add_direct_return(*scan.setup, scene.wall_albedo());
     RenderResult result = renderer.result();
-    core::observe_live_zones(*scan.sensor, result.capture);
+    core::observe_live_zones(*scan.setup, result.capture);
     return result;
 }
 

@@ -33,7 +33,7 @@ using PointRenderer = std::function<RenderResult(
 /// throws          core::Error for restir, velocities and walls that are meshes; what
 ///                 `render_points` throws
 RenderResult render_zones(const Scene& scene,
-                          const core::Scan& scan,
+                          const core::SensorScan& scan,
                           const core::HistogramAxes& axes,
                           const RenderSettings& settings,
                           const PointRenderer& render_points,

@@ -79,8 +79,8 @@ class SmoothedRender {
         double end = 0.1;  // of the work; how much there is shows later
         for (std::uint64_t round = 0;; ++round) {
             trace(round, samples, task_.progress.part(begin, end));
-            SmoothedMean smoothed =
-                smooth_mean(halves_[0].mean, halves_[1].mean, task_.scan, precomputed_.transient);
+            SmoothedMean smoothed = smooth_mean(
+                halves_[0].mean, halves_[1].mean, task_.scan.wall(), precomputed_.transient);
             const double needed =
                 growth_needed(smoothed, *task_.settings.target_error, precomputed_);
             if (needed <= 1.0 || result_.interrupted) return finish(smoothed);

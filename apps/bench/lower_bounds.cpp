@@ -92,7 +92,7 @@ double fk_fft_seconds(const nlos::MethodInput& input) {
 /// Those of the phasor field: for every depth and frequency the kernel and one plane back.
 double phasor_fft_seconds(const nlos::MethodInput& input, const nlos::PhasorSettings& settings) {
     const nlos::PhasorTransforms transforms = nlos::phasor_transforms(input, settings);
-    const bool is_confocal = input.scan.pattern == core::ScanPattern::Confocal;
+    const bool is_confocal = input.scan.is_confocal();
     const nlos::WallGrid& grid = *input.wall.grid;
     // Confocal frequencies add up before the way back.
     return plane_seconds(grid.size,
@@ -124,10 +124,10 @@ double multiply_add_seconds(double pairs) {
 
 double reconstruction_limit_seconds(const core::Capture& capture,
                                     const nlos::Reconstruction& done) {
-    const nlos::WallFrame wall = nlos::derive_wall_frame(capture.scan);
+    const nlos::WallFrame wall = nlos::derive_wall_frame(capture.scan.wall());
     const core::Progress progress;
     const nlos::ReconstructSettings& settings = done.settings;
-    const nlos::MethodInput input{capture.scan,
+    const nlos::MethodInput input{capture.scan.wall(),
                                   capture.time_axis,
                                   capture.transient,
                                   wall,
@@ -154,7 +154,7 @@ double reconstruction_limit_seconds(const core::Capture& capture,
     return 0.0;
 }
 
-double shadow_ray_seconds(const renderer::Scene& scene, const core::Scan& scan) {
+double shadow_ray_seconds(const renderer::Scene& scene, const core::WallScan& scan) {
     constexpr std::size_t kPoints = 64;
     constexpr std::size_t kLanes = renderer::SegmentPacket::kSize;
     constexpr std::size_t kRays = 128 * kLanes;  // per point

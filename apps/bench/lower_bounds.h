@@ -13,6 +13,6 @@ double reconstruction_limit_seconds(const core::Capture& capture, const nlos::Re
 
 /// One shadow ray from a scan's points to hidden surfaces, in packets from one point to places in
 /// the order of the file: the lower limit of every path of `path`. In CPU seconds.
-double shadow_ray_seconds(const renderer::Scene& scene, const core::Scan& scan);
+double shadow_ray_seconds(const renderer::Scene& scene, const core::WallScan& scan);
 
 }  // namespace apps

@@ -101,23 +101,25 @@ void print_differences(std::string& out,
 void print_measurement(std::string& out,
                        const renderer::SceneDescription& description,
                        const core::Scan& scan) {
-    if (scan.camera) {
-        add_line(out, "camera: {} x {} pixels", scan.camera->width(), scan.camera->height());
-        return;
-    }
-    if (scan.sensor) {
-        for (const std::string& line : core::describe_sensor(*scan.sensor)) {
-            add_line(out, "{}", line);
-        }
-        return;
-    }
-    add_line(out,
-             "scan: {}, {} sensing points, {} illumination points, wall {:.4g} x {:.4g} m",
-             core::enum_name(scan.pattern),
-             scan.sensing.size(),
-             scan.illumination.size(),
-             description.relay_wall.size_m[0],
-             description.relay_wall.size_m[1]);
+    scan.visit(
+        [&](const core::ImageScan& image) {
+            const auto& [width, height] = image.camera.resolution;
+            add_line(out, "camera: {} x {} pixels", width, height);
+        },
+        [&](const core::SensorScan& zones) {
+            for (const std::string& line : core::describe_sensor(*zones.setup)) {
+                add_line(out, "{}", line);
+            }
+        },
+        [&](const core::WallScan& wall) {
+            add_line(out,
+                     "scan: {}, {} sensing points, {} illumination points, wall {:.4g} x {:.4g} m",
+                     wall.name(),
+                     wall.sensing.size(),
+                     wall.illumination.size(),
+                     description.relay_wall.size_m[0],
+                     description.relay_wall.size_m[1]);
+        });
 }
 
 void print_light(std::string& out,

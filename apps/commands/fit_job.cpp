@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr int kFitColumns = 3;  // of the picture
 
 void refuse_camera(const calib::FitInput& input) {
-    if (!input.capture.scan.camera && !input.scene.camera) return;
+    if (input.capture.scan.has_wall() && !input.scene.camera) return;
     throw core::Error(input.scene.camera ? input.settings.scene : "capture",
                       "has a camera in place of a relay wall",
                       "must be a scan of a relay wall");
@@ -53,8 +53,8 @@ calib::FitInput make_input(const FitRequest& request) {
 
 // The data stay as they are: offsets go into the model, where they cost no light.
 void use_calibration(const calib::AppliedCalibration& calibration, calib::FitInput& input) {
-    calib::replace_points(calibration, input.capture.scan);
-    input.offset_m = calib::pair_offsets(calibration, input.capture.scan);
+    calib::replace_points(calibration, input.capture.scan.wall());
+    input.offset_m = calib::pair_offsets(calibration, input.capture.scan.wall());
     if (!core::is_stated(input.settings.response)) input.settings.response = calibration.response;
 }
 

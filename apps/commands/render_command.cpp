@@ -37,7 +37,7 @@ constexpr std::array<Shorthand, 6> kRenderShorthands{
      {"--seed", "render.seed", "N", "Seed of the random numbers"}}};
 
 void note(const renderer::RenderResult& result, const std::string& output) {
-    note_written({output, result.capture.scan.camera ? with_suffix(output, ".png") : ""});
+    note_written({output, result.capture.scan.has_wall() ? "" : with_suffix(output, ".png")});
     outcome()["estimator"] = estimator_names(result);
     outcome()["pairs"] = result.capture.scan.num_pairs();
     outcome()["bins"] = result.capture.time_axis.num_bins;
@@ -97,9 +97,7 @@ void run(const RenderArguments& arguments) {
           frames,
           capture.scan.num_pairs(),
           capture.time_axis.num_bins,
-          capture.scan.camera   ? "camera"
-          : capture.scan.sensor ? "sensor"
-                                : core::enum_name(capture.scan.pattern),
+          capture.scan.name(),
           estimator_names(result),
           effort,
           result.seconds);

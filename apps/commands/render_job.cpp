@@ -151,13 +151,14 @@ std::string estimator_names(const renderer::RenderResult& result) {
 }
 
 void use_calibration(calib::AppliedCalibration calibration, RenderInput& input) {
-    if (input.scan.camera || input.scan.sensor || input.description.frames ||
-        input.description.velocity_axis) {
+    const auto* points = input.scan.as<core::WallScan>();
+    if (points == nullptr || input.scan.as<core::SensorScan>() != nullptr ||
+        input.description.frames || input.description.velocity_axis) {
         throw core::Error("calibration",
                           "found a camera, a sensor, frames or a velocity axis",
                           "must be a scan without these");
     }
-    calib::replace_points(calibration, input.scan);
+    calib::replace_points(calibration, input.scan.wall());
     input.calibration = std::move(calibration);
 }
 
@@ -227,9 +228,9 @@ renderer::RenderResult render_to_file(const std::string& scene_path,
     renderer::RenderResult result = render_input(std::move(input), progress);
     progress.stage(3, 3, "writing", 1.0, 1.0);
     const std::vector<std::string> left_out = nlos::write_capture(capture_path, result.capture);
-    if (result.capture.scan.camera) {
+    if (const auto* image = result.capture.scan.as<core::ImageScan>()) {
         core::write_text_file(with_suffix(capture_path, ".png"),
-                              nlos::encode_preview_png(result.capture));
+                              nlos::encode_preview_png(result.capture, image->camera));
     }
     result.warnings.insert(result.warnings.end(), left_out.begin(), left_out.end());
     return result;

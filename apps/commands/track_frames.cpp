@@ -91,7 +91,7 @@ TrackSensor sensor_of(const core::Capture& capture,
     sensor.axis = capture.time_axis;
     sensor.frame_s = kUsualFrame_s;
     sensor.sigma_m = core::sigma_m_from_fwhm_ps(kUsualFwhm_ps);
-    sensor.opl_origin = capture.scan.opl_origin;
+    sensor.opl_origin = capture.scan.opl_origin();
     const auto recorded = core::recorded_sensor(capture);
     if (recorded && settings.sensor.empty()) {
         settings.pose = recorded->pose;
@@ -102,9 +102,10 @@ TrackSensor sensor_of(const core::Capture& capture,
     } else if (!settings.sensor.empty()) {
         use_model(core::read_sensor_model(settings.sensor), settings, sensor);
     } else {
-        sensor.spots_m = capture.scan.sensing.positions;
+        sensor.spots_m = capture.scan.wall().sensing.positions;
         sensor.wall = settings.wall ? *settings.wall : calib::wall_through(sensor.spots_m, name);
-        sensor.device_m = 0.5 * (capture.scan.laser_position + capture.scan.detector_position);
+        const core::Devices devices = capture.scan.devices();
+        sensor.device_m = 0.5 * (devices.laser + devices.detector);
         if (const auto response = core::recorded_response(capture)) {
             sensor.sigma_m = core::sigma_m_from_fwhm_ps(response->jitter_fwhm_ps);
         }

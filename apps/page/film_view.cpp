@@ -15,17 +15,8 @@ constexpr double kFaintest = 1e-5;     // of the brightest value; what is fainte
 constexpr double kQuietShare = 0.001;  // of all light, before and after the bins called lit
 
 /// Whose histogram each cell shows, cells in the film's order.
-std::vector<std::size_t> pairs_of_cells(const core::Scan& scan,
+std::vector<std::size_t> pairs_of_cells(const core::WallScan& scan,
                                         const std::optional<nlos::WallGrid>& grid) {
-    if (scan.camera) {
-        std::vector<std::size_t> pairs(scan.camera->num_pixels());
-        const std::size_t width = scan.camera->width();
-        const std::size_t height = scan.camera->height();
-        for (std::size_t cell = 0; cell < pairs.size(); ++cell) {
-            pairs[cell] = cell % width * height + cell / width;
-        }
-        return pairs;
-    }
     std::vector<std::size_t> pairs(scan.scanned_points().size());
     for (std::size_t cell = 0; cell < pairs.size(); ++cell) {
         const std::size_t point =
@@ -35,15 +26,24 @@ std::vector<std::size_t> pairs_of_cells(const core::Scan& scan,
     return pairs;
 }
 
-void describe_cells(const core::Scan& scan,
-                    const std::optional<nlos::WallGrid>& grid,
-                    FilmView& film) {
+/// Sets what the cells are, and returns pairs_of_cells().
+std::vector<std::size_t> lay_out(const core::ImageScan& image, FilmView& film) {
+    const std::size_t width = image.camera.width();
+    const std::size_t height = image.camera.height();
+    film.kind = FilmView::Kind::Camera;
+    film.size = {width, height};
+    film.detail = fmt::format("image of {} × {} pixels", width, height);
+    std::vector<std::size_t> pairs(image.num_pairs());
+    for (std::size_t cell = 0; cell < pairs.size(); ++cell) {
+        pairs[cell] = cell % width * height + cell / width;
+    }
+    return pairs;
+}
+
+std::vector<std::size_t> lay_out(const core::WallScan& scan, FilmView& film) {
+    const std::optional<nlos::WallGrid> grid = nlos::derive_wall_frame(scan).grid;
     const std::string pattern(core::enum_name(scan.pattern));
-    if (scan.camera) {
-        film.kind = FilmView::Kind::Camera;
-        film.size = {scan.camera->width(), scan.camera->height()};
-        film.detail = fmt::format("image of {} × {} pixels", film.size[0], film.size[1]);
-    } else if (grid) {
+    if (grid) {
         film.kind = FilmView::Kind::Wall;
         film.size = grid->size;
         film.x_m = nlos::cell_edges(grid->first_m[0], grid->pitch_m[0], grid->size[0]);
@@ -55,13 +55,14 @@ void describe_cells(const core::Scan& scan,
         film.size = {film.positions.size(), 1};
         film.detail = fmt::format("{} scan of {} points", pattern, film.size[0]);
     }
-    if (scan.pattern == core::ScanPattern::Exhaustive) {
+    if (scan.is_exhaustive()) {
         const bool of_lit = nlos::shows_lit_points(scan);
         const std::size_t others = (of_lit ? scan.sensing : scan.illumination).size();
         film.detail += of_lit ? ", sensed at " : ", lit at ";
         film.detail +=
             others == 1 ? "one point" : fmt::format("the middle one of {} points", others);
     }
+    return pairs_of_cells(scan, grid);
 }
 
 /// Codes histograms that are stored one after another, and says which bins hold the light.
@@ -151,14 +152,12 @@ void show_time(const core::Capture& capture,
 }  // namespace
 
 FilmView film_view(const core::Capture& capture, const std::string& name) {
-    const std::optional<nlos::WallGrid> grid =
-        capture.scan.camera ? std::nullopt : nlos::derive_wall_frame(capture.scan).grid;
     FilmView film;
     film.name = name;
     film.unit = core::enum_name(capture.unit);
     if (nlos::light_label(capture) == nlos::kRenderedRadiance) film.unit = "W/(m² sr)";
-    describe_cells(capture.scan, grid, film);
-    const std::vector<std::size_t> pairs = pairs_of_cells(capture.scan, grid);
+    const std::vector<std::size_t> pairs =
+        capture.scan.visit([&](const auto& kind) { return lay_out(kind, film); });
     if (capture.sequence) {
         show_frames(capture, pairs, film);
     } else {

@@ -45,7 +45,7 @@ struct PageWall {
 
 PageWall page_wall(const PageViews& views) {
     PageWall wall;
-    const bool has_points = views.scan && !views.scan->camera;
+    const bool has_points = views.scan.has_value();
     if (!views.results.empty()) {
         wall.frame_from_world = views.results.front().depth.world_from_wall.inverse();
     } else if (has_points) {
@@ -113,12 +113,12 @@ core::Json views_json(const PageViews& views, int halvings, PageArrays& arrays) 
                     {"results", core::Json::array()},
                     {"best", views.best + (views.truth ? 1 : 0)},
                     {"films", core::Json::array()}};
-    if (views.scan && !views.scan->camera) {
+    if (views.scan) {
         const auto add = [&](const core::WallPoints& points) {
             return add_points(arrays, points.positions, wall.frame_from_world);
         };
         json["sensing"] = add(views.scan->sensing);
-        if (views.scan->pattern != core::ScanPattern::Confocal) {
+        if (!views.scan->is_confocal()) {
             json["illumination"] = add(views.scan->illumination);
         }
     }

@@ -68,11 +68,11 @@ TruthView truth_view(const std::string& scene_path, std::vector<ResultView>& res
 struct PageViews {
     std::vector<ResultView> results;
     std::vector<FilmView> films;
-    std::optional<core::Scan> scan;  ///< whose wall points are shown
+    std::optional<core::WallScan> scan;  ///< whose wall points are shown
     std::optional<TruthView> truth;
     std::size_t best = 0;  ///< of the results, to be shown first
 
-    bool has_space() const { return !results.empty() || truth || (scan && !scan->camera); }
+    bool has_space() const { return !results.empty() || truth || scan; }
     bool empty() const { return !has_space() && films.empty(); }
 };
 

@@ -31,7 +31,7 @@ void for_each_field(CaptureFields& s, Visitor&& visit) {
     visit("bin_width_m", t.bin_width_m, core::above(0, "width of a bin in path length [m]"));
     visit("opl_start_m", t.opl_start_m, core::Ranged{"path length at the start of bin 0 [m]", {}});
     visit("pattern", s.pattern, "how illumination and sensing points pair up");
-    visit("opl_origin", c.scan.opl_origin, "where path lengths start and end");
+    visit("opl_origin", c.scan.wall().opl_origin, "where path lengths start and end");
     visit("laser_m", s.laser_m, "laser position, world [m]");
     visit("detector_m", s.detector_m, "detector position, world [m]");
     visit("unit", c.unit, "what the numbers of H are");
@@ -52,7 +52,7 @@ core::WallPoints points_from(nb::handle positions, nb::handle normals, const std
 }
 
 core::ScanPattern pattern_of(const Capture& capture) {
-    const core::Scan& scan = capture.scan;
+    const core::WallScan& scan = capture.scan.wall();
     if (scan.illumination.size() == 0) return core::ScanPattern::Confocal;
     return scan.illumination.size() == 1 && capture.transient.num_pairs() == scan.sensing.size()
                ? core::ScanPattern::Single
@@ -69,32 +69,32 @@ Capture capture_from_arrays(nb::handle values,
     capture.time_axis.bin_width_m = 0.0;  // to be stated
     const auto fields = settings_from_python(keywords, CaptureFields{capture, {}, {}, {}});
     core::check_ranges(fields, "");
-    capture.scan.sensing = points_from(sensing, sensing_normals, "sensing");
+    core::WallScan& scan = capture.scan.wall();
+    scan.sensing = points_from(sensing, sensing_normals, "sensing");
     if (!illumination.is_none()) {
-        capture.scan.illumination = points_from(illumination, illumination_normals, "illumination");
+        scan.illumination = points_from(illumination, illumination_normals, "illumination");
     }
     const HistogramArray histograms = histograms_from(values, "H");
     capture.transient = transient_from(histograms);
-    capture.scan.pattern = fields.pattern ? *fields.pattern : pattern_of(capture);
-    if (capture.scan.pattern == core::ScanPattern::Confocal) {
-        capture.scan.illumination = capture.scan.sensing;
+    scan.pattern = fields.pattern ? *fields.pattern : pattern_of(capture);
+    if (scan.is_confocal()) {
+        scan.illumination = scan.sensing;
     }
     capture.time_axis.num_bins = static_cast<int>(capture.transient.num_bins());
-    if (capture.scan.opl_origin == core::OplOrigin::Device &&
-        (!fields.laser_m || !fields.detector_m)) {
+    if (scan.opl_origin == core::OplOrigin::Device && (!fields.laser_m || !fields.detector_m)) {
         throw core::Error("opl_origin",
                           "found device without laser_m and detector_m",
                           "must be relay_wall, or both positions given");
     }
-    capture.scan.laser_position = fields.laser_m.value_or(core::Vec3::Zero());
-    capture.scan.detector_position = fields.detector_m.value_or(core::Vec3::Zero());
+    scan.laser_position = fields.laser_m.value_or(core::Vec3::Zero());
+    scan.detector_position = fields.detector_m.value_or(core::Vec3::Zero());
     const Extents expected = histogram_shape(capture.scan, capture.transient.num_bins());
     if (shape_of(histograms) != expected) {
         throw core::Error("H",
                           "has shape " + shape_text(shape_of(histograms)),
                           fmt::format("must have shape {}: time, then the points of this {} scan",
                                       shape_text(expected),
-                                      core::enum_name(capture.scan.pattern)));
+                                      core::enum_name(scan.pattern)));
     }
     core::validate(capture, "capture");
     return capture;
@@ -119,8 +119,10 @@ std::vector<std::string> write_capture(const Capture& capture,
 // Views of points in the shape of their list or grid.
 template <auto List, auto Vectors>
 Array<double> points_property(nb::handle self) {
-    core::WallPoints& points = nb::cast<Capture&>(self).scan.*List;
-    return array_view(points.*Vectors, points_shape(points), self);
+    static core::WallPoints none;  // of an image
+    core::Scan& scan = nb::cast<Capture&>(self).scan;
+    core::WallPoints& points = scan.has_wall() ? scan.wall().*List : none;
+    return array_view(points.*Vectors, points.extents(), self);
 }
 
 std::optional<Array<std::int32_t>> observed_bins(const Capture& capture) {
@@ -162,8 +164,8 @@ auto name_of(Enum T::*member) {
 }
 
 void bind_arrays(nb::class_<Capture>& binding) {
-    using core::Scan;
     using core::WallPoints;
+    using core::WallScan;
     binding
         .def_prop_ro(
             "H",
@@ -184,14 +186,14 @@ void bind_arrays(nb::class_<Capture>& binding) {
         .def_prop_ro("frames", &frames_of, "list of arrays like H; empty unless a sequence")
         .def_prop_ro("by_order", &orders_of, "dict of bounce order: array like H")
         .def_prop_ro("sensing_points_m",
-                     &points_property<&Scan::sensing, &WallPoints::positions>,
+                     &points_property<&WallScan::sensing, &WallPoints::positions>,
                      "(Sx, Sy, 3) or (S, 3) float64, world [m]")
-        .def_prop_ro("sensing_normals", &points_property<&Scan::sensing, &WallPoints::normals>)
+        .def_prop_ro("sensing_normals", &points_property<&WallScan::sensing, &WallPoints::normals>)
         .def_prop_ro("illumination_points_m",
-                     &points_property<&Scan::illumination, &WallPoints::positions>,
+                     &points_property<&WallScan::illumination, &WallPoints::positions>,
                      "(Lx, Ly, 3) or (L, 3) float64, world [m]; confocal: the sensing points")
         .def_prop_ro("illumination_normals",
-                     &points_property<&Scan::illumination, &WallPoints::normals>)
+                     &points_property<&WallScan::illumination, &WallPoints::normals>)
         .def_prop_ro("observed_bins",
                      &observed_bins,
                      nb::rv_policy::reference,
@@ -215,21 +217,22 @@ void bind_facts(nb::class_<Capture>& binding) {
             "axis",
             [](Capture& c) { return python_from_json(core::write_value(c.time_axis)); },
             "dict of opl_start_m, bin_width_m, num_bins")
-        .def_prop_ro("pattern",
-                     [](const Capture& c) { return std::string(core::enum_name(c.scan.pattern)); })
+        .def_prop_ro(
+            "pattern",
+            [](const Capture& c) { return std::string(core::enum_name(c.scan.pattern())); })
         .def_prop_ro(
             "opl_origin",
-            [](const Capture& c) { return std::string(core::enum_name(c.scan.opl_origin)); })
+            [](const Capture& c) { return std::string(core::enum_name(c.scan.opl_origin())); })
         .def_prop_ro("unit", name_of(&Capture::unit), "radiance or counts")
         .def_prop_ro("laser_m",
                      [](const Capture& c) {
-                         return python_from_json(core::write_value(c.scan.laser_position));
+                         return python_from_json(core::write_value(c.scan.devices().laser));
                      })
         .def_prop_ro("detector_m",
                      [](const Capture& c) {
-                         return python_from_json(core::write_value(c.scan.detector_position));
+                         return python_from_json(core::write_value(c.scan.devices().detector));
                      })
-        .def_prop_ro("is_image", [](const Capture& c) { return c.scan.camera.has_value(); })
+        .def_prop_ro("is_image", [](const Capture& c) { return !c.scan.has_wall(); })
         .def_prop_ro("counts_per_radiance", [](const Capture& c) { return c.counts_per_radiance; })
         .def_prop_rw(
             "scene_info",

@@ -48,19 +48,9 @@ std::vector<std::int64_t> pair_offsets(const HistogramArray& array) {
 
 }  // namespace
 
-Extents points_shape(const core::WallPoints& points) {
-    if (!points.grid) return {points.size()};
-    return {points.grid->begin(), points.grid->end()};
-}
-
 Extents histogram_shape(const core::Scan& scan, std::size_t num_bins) {
-    if (scan.camera) return {num_bins, scan.camera->width(), scan.camera->height()};
     Extents shape{num_bins};
-    const auto append = [&](const core::WallPoints& points) {
-        for (const std::size_t extent : points_shape(points)) shape.push_back(extent);
-    };
-    if (scan.pattern == core::ScanPattern::Exhaustive) append(scan.illumination);
-    append(scan.sensing);
+    for (const std::size_t extent : scan.pair_extents()) shape.push_back(extent);
     return shape;
 }
 

@@ -10,7 +10,6 @@ namespace python {
 using HistogramArray = nanobind::ndarray<float, nanobind::device::cpu>;
 
 /// The grid of points, or the length of their list.
-Extents points_shape(const core::WallPoints& points);
 
 /// Time, then the axes of H that stand for a capture's pairs: (Sx, Sy), (S), (Lx, Ly, Sx, Sy),
 /// (L, S) or (width, height).

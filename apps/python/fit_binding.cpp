@@ -19,7 +19,7 @@ namespace nb = nanobind;
 /// What a fit needs of a capture; the histograms stay where they are.
 core::Capture borrowed(core::Capture& capture) {
     core::Capture view;
-    view.scan = capture.scan;
+    view.scan = capture.scan.wall();
     view.time_axis = capture.time_axis;
     view.transient = core::Transient(capture.transient.num_pairs(),
                                      capture.transient.values(),

@@ -43,7 +43,7 @@ JoinedObjects join(const renderer::SceneGeometry& geometry) {
 class ThirdBouncePullback {
  public:
     ThirdBouncePullback(JoinedObjects joined,
-                        const core::Scan& scan,
+                        const core::WallScan& scan,
                         std::unique_ptr<const calib::ThirdBounceVjp> vjp)
         : joined_(std::move(joined)), scan_(scan), vjp_(std::move(vjp)) {}
 
@@ -96,7 +96,7 @@ class ThirdBouncePullback {
     }
 
     JoinedObjects joined_;
-    core::Scan scan_;
+    core::WallScan scan_;
     std::unique_ptr<const calib::ThirdBounceVjp> vjp_;
 };
 
@@ -106,9 +106,7 @@ ThirdBouncePullback make_pullback(const SceneObject& scene,
                                   const nb::dict& keywords) {
     auto settings = settings_from_python<calib::ThirdBounceVjpSettings>(keywords);
     ScannedScene scanned = scan_scene(scene, scan, axis, core::Json::object());
-    if (scanned.scan.camera) {
-        throw core::Error("scene", "has a camera in place of a relay wall", "must have a wall");
-    }
+    const core::WallScan& wall_scan = scanned.scan.wall("scene");
     const renderer::SceneDescription& description = scanned.scene.description;
     if (description.time_axis.automatic) {
         throw core::Error("axis", "found auto", "must be opl_start_m, bin_width_m and num_bins");
@@ -117,9 +115,9 @@ ThirdBouncePullback make_pullback(const SceneObject& scene,
     JoinedObjects joined = join(scanned.scene.geometry);
     auto vjp = run_long(nb::none(), 0, [&](const core::Progress& report) {
         return std::make_unique<const calib::ThirdBounceVjp>(
-            joined.mesh, joined.albedo, scanned.scan, description.time_axis, settings, report);
+            joined.mesh, joined.albedo, wall_scan, description.time_axis, settings, report);
     });
-    return {std::move(joined), scanned.scan, std::move(vjp)};
+    return {std::move(joined), wall_scan, std::move(vjp)};
 }
 
 }  // namespace

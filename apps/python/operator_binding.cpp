@@ -91,9 +91,7 @@ std::vector<double> centres_from(nb::handle value, const std::string& name) {
 
 const core::Capture& checked(const core::Capture& capture) {
     core::validate(capture, "capture");
-    if (capture.scan.camera) {
-        throw core::Error("capture", "is an image of a camera", "must be a scan of a relay wall");
-    }
+    capture.scan.wall("capture");  // or throws
     return capture;
 }
 

@@ -31,7 +31,7 @@ void for_each_field(OperatorSettings& s, Visitor&& visit) {
 
 /// The scan and the voxels of an operator, which refers to them.
 struct OperatorPlace {
-    core::Scan scan;
+    core::WallScan scan;
     core::TimeAxis axis;
     core::ObservedBins observed;
     core::Transient empty{};
@@ -40,10 +40,10 @@ struct OperatorPlace {
     core::Progress progress{};
 
     OperatorPlace(const core::Capture& capture, std::array<std::vector<double>, 3> voxels_m)
-        : scan(capture.scan),
+        : scan(capture.scan.wall()),
           axis(capture.time_axis),
           observed(capture.observed),
-          wall(nlos::derive_wall_frame(capture.scan)),
+          wall(nlos::derive_wall_frame(scan)),
           axes{std::move(voxels_m[0]),
                std::move(voxels_m[1]),
                std::move(voxels_m[2]),
@@ -167,8 +167,8 @@ class LightCone {
 
  private:
     static std::array<std::vector<double>, 3> columns_of(const core::Capture& capture) {
-        const nlos::WallFrame wall = nlos::derive_wall_frame(capture.scan);
-        if (capture.scan.pattern != core::ScanPattern::Confocal || !wall.grid) {
+        const nlos::WallFrame wall = nlos::derive_wall_frame(capture.scan.wall());
+        if (!capture.scan.wall().is_confocal() || !wall.grid) {
             throw core::Error("capture",
                               "is no confocal scan of an even planar grid",
                               "must be one; PairOperator takes any");

@@ -180,7 +180,9 @@ ScannedScene scan_scene(const SceneObject& scene,
         return scanned;
     }
     scanned.scan = like->scan;
-    if (!like->scan.camera) renderer::describe_scan(like->scan, scanned.scene.description.scan);
+    if (const auto* wall = like->scan.as<core::WallScan>()) {
+        renderer::describe_scan(*wall, scanned.scene.description.scan);
+    }
     if (axis.is_none()) scanned.scene.description.time_axis = {like->time_axis};
     return scanned;
 }

@@ -75,7 +75,7 @@ std::string lead_text(const ResultsFolder& results) {
 std::string space_caption(const ResultsFolder& results) {
     const PageViews& views = results.views;
     std::vector<std::string> things{"the relay wall"};
-    if (views.scan && !views.scan->camera) things.front() += " with its scan points";
+    if (views.scan) things.front() += " with its scan points";
     if (!views.results.empty()) {
         things.push_back("what was reconstructed by " + methods_text(views));
     }

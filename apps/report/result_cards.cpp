@@ -33,17 +33,18 @@ std::string points_text(const core::WallPoints& points) {
     return fmt::format("{} x {}", (*points.grid)[0], (*points.grid)[1]);
 }
 
-std::vector<Fact> scan_facts(const core::Scan& scan) {
-    if (scan.camera) {
-        return {
-            {"Camera", fmt::format("{} x {} pixels", scan.camera->width(), scan.camera->height())},
-            {"Angle of view", short_number(scan.camera->fov_y_deg) + " degrees high"},
-            {"Light", scan.camera->light_spot_m ? "spot on a surface" : "point"}};
-    }
+std::vector<Fact> scan_facts(const core::ImageScan& image) {
+    const core::PinholeCamera& camera = image.camera;
+    return {{"Camera", fmt::format("{} x {} pixels", camera.width(), camera.height())},
+            {"Angle of view", short_number(camera.fov_y_deg) + " degrees high"},
+            {"Light", camera.light_spot_m ? "spot on a surface" : "point"}};
+}
+
+std::vector<Fact> scan_facts(const core::WallScan& scan) {
     const nlos::WallFrame frame = nlos::derive_wall_frame(scan);
     std::vector<Fact> facts{{"Scan", std::string(core::enum_name(scan.pattern))},
                             {"Sensing points", points_text(scan.sensing)}};
-    if (scan.pattern != core::ScanPattern::Confocal) {
+    if (!scan.is_confocal()) {
         facts.emplace_back("Illumination points", points_text(scan.illumination));
     }
     facts.emplace_back("Wall covered",
@@ -54,8 +55,8 @@ std::vector<Fact> scan_facts(const core::Scan& scan) {
 }
 
 std::string path_origin(const core::Scan& scan) {
-    if (scan.camera) return "the light";
-    return scan.opl_origin == core::OplOrigin::Device ? "the device" : "the relay wall";
+    if (!scan.has_wall()) return "the light";
+    return scan.opl_origin() == core::OplOrigin::Device ? "the device" : "the relay wall";
 }
 
 std::vector<Fact> capture_facts(const core::Capture& capture) {
@@ -63,7 +64,7 @@ std::vector<Fact> capture_facts(const core::Capture& capture) {
     const auto values = capture.transient.values();
     double total = 0.0;
     for (const float value : values) total += value;
-    std::vector<Fact> facts = scan_facts(capture.scan);
+    std::vector<Fact> facts = capture.scan.visit([](const auto& kind) { return scan_facts(kind); });
     if (capture.sequence) {
         facts.emplace_back(
             "Frames, of which H is the last",

@@ -78,7 +78,8 @@ void read_measurement(const fs::path& path,
     const core::Capture capture = nlos::read_capture(path.string(), settings);
     results.captures.push_back(capture_card(path.string(), capture));
     results.views.films.push_back(film_view(capture, name));
-    if (!results.views.scan) results.views.scan = capture.scan;
+    const auto* points = capture.scan.as<core::WallScan>();
+    if (!results.views.scan && points != nullptr) results.views.scan = *points;
 }
 
 void read_json(const fs::path& path, ResultsFolder& results) {

@@ -26,7 +26,7 @@ enum class ElementVisibility : std::uint8_t { Unknown, Hidden, Whole, Part };
 /// Cuts all facets with an area, in the order of their tree, by the rules of append_elements().
 std::vector<MeshElement> cut_mesh(const core::TriangleMesh& mesh,
                                   const FacetTree& tree,
-                                  const core::Scan& scan,
+                                  const core::WallScan& scan,
                                   double smear_m,
                                   double tolerance);
 
@@ -51,7 +51,7 @@ struct AdjointScene {
     const std::vector<double>& albedo;  ///< per facet
     const FacetTree& tree;
     const std::vector<MeshElement>& elements;  ///< in the order of the tree
-    const core::Scan& scan;
+    const core::WallScan& scan;
     core::TimeAxis axis;
     double radiance_factor = 1.0;  ///< of an albedo of 1
     double sigma_m = 0.0;          ///< of a Gaussian response, in path length

@@ -27,7 +27,7 @@ MeshElement element_of(const std::array<Vec3, 3>& facet, const ModelElement& par
 
 std::vector<MeshElement> cut_mesh(const core::TriangleMesh& mesh,
                                   const FacetTree& tree,
-                                  const core::Scan& scan,
+                                  const core::WallScan& scan,
                                   double smear_m,
                                   double tolerance) {
     std::vector<ModelElement> parts;

@@ -35,7 +35,7 @@ PairEvaluator::PairEvaluator(const AdjointScene& scene)
 }
 
 void PairEvaluator::look_at(std::size_t pair) {
-    const core::Scan& scan = scene_.scan;
+    const core::WallScan& scan = scene_.scan;
     const std::size_t sensor = scan.sensing_index(pair);
     const std::size_t light = scan.illumination_index(pair);
     light_.ends[1].position = scan.sensing.positions[sensor];

@@ -168,7 +168,7 @@ std::array<bool, 2> light_is_cut(const FitData& data, double ambient) {
     return {stands_out(0), stands_out(bins - width)};
 }
 
-PairSubset thin(const core::Scan& scan, std::size_t most) {
+PairSubset thin(const core::WallScan& scan, std::size_t most) {
     const bool is_exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
     std::size_t step = 1;
     const auto kept = [&](const core::WallPoints& points) {

@@ -54,11 +54,11 @@ std::array<bool, 2> light_is_cut(const FitData& data, double ambient);
 
 /// Some of a scan's pairs, spread evenly over the wall.
 struct PairSubset {
-    core::Scan scan;
+    core::WallScan scan;
     std::vector<std::size_t> pairs;  ///< of the whole scan, in the subset's order
 };
 /// At most about `most` pairs, every k-th point of each axis of a grid.
-PairSubset thin(const core::Scan& scan, std::size_t most);
+PairSubset thin(const core::WallScan& scan, std::size_t most);
 
 /// The histograms of some pairs.
 FitData select(const FitData& data, const std::vector<std::size_t>& pairs);

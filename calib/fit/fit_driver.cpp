@@ -50,7 +50,7 @@ bool is_free(const FreeObject& object) {
 }
 
 void check_start(const FitDriver& driver, const SceneState& state) {
-    const core::Scan& scan = driver.input.capture.scan;
+    const core::WallScan& scan = driver.input.capture.scan.wall();
     for (std::size_t b = 0; b < driver.model->bodies().size(); ++b) {
         if (!is_free(driver.model->bodies()[b].free)) continue;
         bool is_in_front = false;
@@ -106,7 +106,7 @@ void place_points(const FitDriver& driver, SceneState& state) {
         const int merged =
             std::max(1, static_cast<int>(kBinPerSigma * width / driver.data.axis.bin_width_m));
         const FitData coarse = coarsen(driver.data, blur, merged);
-        positions = brightest_points(driver.input.capture.scan,
+        positions = brightest_points(driver.input.capture.scan.wall(),
                                      coarse,
                                      driver.ambient_guess * merged,
                                      width,
@@ -177,7 +177,7 @@ FitDriver::FitDriver(const FitInput& fit_input, const core::Progress& progress)
     data.min_mean = 1e-6 * total / static_cast<double>(data.num_observed());
     offset_m = input.offset_m;
     for (std::size_t pair = 0; offset_m.size() < input.capture.scan.num_pairs(); ++pair) {
-        offset_m.push_back(input.capture.scan.device_legs_m(pair));
+        offset_m.push_back(input.capture.scan.wall().device_legs_m(pair));
     }
 
     // Data of unknown scale leave one albedo open: the first free one stays at its start.
@@ -225,8 +225,8 @@ FitDriver::Stage FitDriver::make_stage(const SceneModel& free_model,
     // Blurred stages only lead the way: they need few pairs.
     const std::size_t most =
         settings.max_pairs ? static_cast<std::size_t>(*settings.max_pairs) : offset_m.size();
-    const PairSubset subset =
-        thin(input.capture.scan, blur_m > 0.0 ? std::min(most, kPairsOfBlurredStages) : most);
+    const PairSubset subset = thin(input.capture.scan.wall(),
+                                   blur_m > 0.0 ? std::min(most, kPairsOfBlurredStages) : most);
     const FitData coarse = coarsen(select(data, subset.pairs), blur_m, merged);
     const int spoilt = static_cast<int>(std::ceil(kBlurReach * blur_m / coarse.axis.bin_width_m));
     stage.data =
@@ -244,7 +244,7 @@ FitDriver::Stage FitDriver::make_stage(const SceneModel& free_model,
     for (const std::size_t pair : subset.pairs) {
         forward.offset_m.push_back(offset_m[pair] + mean_delay);
     }
-    const WallMotion wall(input.capture.scan);
+    const WallMotion wall(input.capture.scan.wall());
     const double albedo = input.scene.relay_wall.albedo;
     forward.radiance_factor = albedo * albedo / (core::kPi * core::kPi * core::kPi) *
                               input.capture.counts_per_radiance.value_or(1.0);
@@ -280,7 +280,8 @@ std::vector<NamedState> FitDriver::starts() const {
         result = {{"given", model->start()}};
         check_start(*this, result.front().second);
     } else if (settings.start == "search") {
-        result = searched(*this, trilaterate(input.capture.scan, data, ambient_guess, offset_m));
+        result =
+            searched(*this, trilaterate(input.capture.scan.wall(), data, ambient_guess, offset_m));
     } else {
         if (input.start_points.empty()) {
             throw core::Error(settings.start, "holds no surface point", "cannot be started from");

@@ -47,7 +47,7 @@ MeanPath mean_path(const FitData& data, std::size_t pair, double ambient, double
 
 }  // namespace
 
-Vec3 trilaterate(const core::Scan& scan,
+Vec3 trilaterate(const core::WallScan& scan,
                  const FitData& data,
                  double ambient,
                  const std::vector<double>& offset_m) {
@@ -163,7 +163,7 @@ void dim_near(double opl_m, double reach_m, std::size_t pair, FitData& data) {
     }
 }
 
-std::vector<Vec3> brightest_points(const core::Scan& scan,
+std::vector<Vec3> brightest_points(const core::WallScan& scan,
                                    const FitData& data,
                                    double ambient,
                                    double sigma_m,

@@ -14,7 +14,7 @@ namespace calib {
 /// offset_m   per pair, part of the path lengths
 /// throws     core::Failure when there is no light beyond the ambient one
 /// source     trilateration by Gauss-Newton
-core::Vec3 trilaterate(const core::Scan& scan,
+core::Vec3 trilaterate(const core::WallScan& scan,
                        const FitData& data,
                        double ambient,
                        const std::vector<double>& offset_m);
@@ -33,7 +33,7 @@ std::vector<core::Vec3> cluster_centers(const std::vector<core::Vec3>& points, s
 /// ambient    light per bin to be ignored
 /// sigma_m    width of the response with its blur, within which a point's light is explained [m]
 /// offset_m   per pair, part of the path lengths
-std::vector<core::Vec3> brightest_points(const core::Scan& scan,
+std::vector<core::Vec3> brightest_points(const core::WallScan& scan,
                                          const FitData& data,
                                          double ambient,
                                          double sigma_m,

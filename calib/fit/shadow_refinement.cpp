@@ -58,7 +58,7 @@ Newton newton_at(const FitDriver& driver, FitDriver::Stage& stage, const SceneSt
 double refinement(const ForwardModel& model) {
     constexpr double kMaxRefinement = 10.0;
     constexpr double kMaxViews = 4e5;  // points times elements
-    const core::Scan& scan = model.scan();
+    const core::WallScan& scan = model.scan();
     const double points = static_cast<double>(scan.sensing.size());
     const double views = points * static_cast<double>(model.num_elements());
     return std::clamp(kMaxViews / views, 1.0, kMaxRefinement);

@@ -54,7 +54,7 @@ std::vector<double> autodiff_jacobian(const SceneModel& model,
                                       const SceneState& state,
                                       const ForwardModel& light,
                                       std::size_t pair) {
-    const core::Scan& scan = light.scan();
+    const core::WallScan& scan = light.scan();
     const core::TimeAxis& axis = light.settings().axis;
     const double sigma_m = light.settings().sigma_m;
     const auto bins = static_cast<std::size_t>(axis.num_bins);

@@ -19,7 +19,7 @@ constexpr int kOversampling = 3;
 }  // namespace
 
 ForwardModel::ForwardModel(const SceneModel& model,
-                           core::Scan scan,
+                           core::WallScan scan,
                            const WallMotion& wall,
                            ForwardSettings settings)
     : model_(model), scan_(std::move(scan)), settings_(std::move(settings)), wall_(wall) {

@@ -43,7 +43,7 @@ class ForwardModel {
     /// scan    the pairs to model
     /// wall    how the points of the whole scan move
     ForwardModel(const SceneModel& model,
-                 core::Scan scan,
+                 core::WallScan scan,
                  const WallMotion& wall,
                  ForwardSettings settings);
 
@@ -64,7 +64,7 @@ class ForwardModel {
     /// Thread-safe between updates.
     void evaluate(std::size_t pair, PairModel& result) const;
 
-    const core::Scan& scan() const { return scan_; }
+    const core::WallScan& scan() const { return scan_; }
     const ForwardSettings& settings() const { return settings_; }
     std::size_t num_elements() const { return elements_.size(); }
     const std::vector<ModelElement>& elements() const { return elements_; }
@@ -108,7 +108,7 @@ class ForwardModel {
                                           std::size_t pair) const;
 
     const SceneModel& model_;
-    core::Scan scan_;
+    core::WallScan scan_;
     ForwardSettings settings_;
     WallMotion wall_;
     SceneState state_;

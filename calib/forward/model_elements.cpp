@@ -23,7 +23,7 @@ struct SplitElement {
     int depth = 0;
 };
 
-double nearest_wall_point(const core::Scan& scan, const Vec3& point) {
+double nearest_wall_point(const core::WallScan& scan, const Vec3& point) {
     double least = std::numeric_limits<double>::infinity();
     for (const core::WallPoints* points : {&scan.sensing, &scan.illumination}) {
         for (const Vec3& w : points->positions) least = std::min(least, (w - point).squaredNorm());
@@ -35,7 +35,7 @@ double nearest_wall_point(const core::Scan& scan, const Vec3& point) {
 
 void append_elements(const std::array<Vec3, 3>& corners,
                      std::uint32_t facet,
-                     const core::Scan& scan,
+                     const core::WallScan& scan,
                      double sigma_m,
                      double tolerance,
                      std::vector<ModelElement>& elements) {
@@ -82,7 +82,7 @@ void append_elements(const std::array<Vec3, 3>& corners,
 
 std::vector<ModelElement> cut_elements(const SceneModel& model,
                                        const SceneState& state,
-                                       const core::Scan& scan,
+                                       const core::WallScan& scan,
                                        double sigma_m,
                                        double tolerance) {
     std::vector<ModelElement> elements;

@@ -30,7 +30,7 @@ struct ModelElement {
 /// source      rule measured, see README.md
 void append_elements(const std::array<core::Vec3, 3>& corners,
                      std::uint32_t facet,
-                     const core::Scan& scan,
+                     const core::WallScan& scan,
                      double sigma_m,
                      double tolerance,
                      std::vector<ModelElement>& elements);
@@ -38,7 +38,7 @@ void append_elements(const std::array<core::Vec3, 3>& corners,
 /// The elements of all facets of a model, where the state puts them.
 std::vector<ModelElement> cut_elements(const SceneModel& model,
                                        const SceneState& state,
-                                       const core::Scan& scan,
+                                       const core::WallScan& scan,
                                        double sigma_m,
                                        double tolerance);
 
@@ -54,7 +54,7 @@ bool is_planar(const SceneModel& model, const SceneState& state);
 std::vector<renderer::VisibilityMask> trace_masks(const SceneModel& model,
                                                   const SceneState& state,
                                                   const std::vector<ModelElement>& elements,
-                                                  const core::Scan& scan,
+                                                  const core::WallScan& scan,
                                                   const core::WallPoints& points);
 
 }  // namespace calib

@@ -83,7 +83,7 @@ bool is_planar(const SceneModel& model, const SceneState& state) {
 std::vector<VisibilityMask> trace_masks(const SceneModel& model,
                                         const SceneState& state,
                                         const std::vector<ModelElement>& elements,
-                                        const core::Scan& scan,
+                                        const core::WallScan& scan,
                                         const core::WallPoints& points) {
     // The wall itself hides nothing from its own points; leaving it out keeps curved walls simple.
     renderer::SceneGeometry geometry = model.posed(state);

@@ -8,7 +8,7 @@ namespace calib {
 
 using core::Vec3;
 
-WallMotion::WallMotion(const core::Scan& scan) {
+WallMotion::WallMotion(const core::WallScan& scan) {
     const core::WallPoints& points = scan.sensing;
     for (std::size_t i = 0; i < points.size(); ++i) {
         center_ += points.positions[i] / static_cast<double>(points.size());

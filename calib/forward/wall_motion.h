@@ -21,7 +21,7 @@ struct MovedWallPoint {
 /// normal by bow (1 - |p|^2 / R^2), R the distance of the farthest point.
 class WallMotion {
  public:
-    explicit WallMotion(const core::Scan& scan);
+    explicit WallMotion(const core::WallScan& scan);
 
     std::vector<MovedWallPoint> moved(const core::WallPoints& points,
                                       const SceneState& state) const;

@@ -62,15 +62,17 @@ std::vector<std::size_t> counterparts(const std::vector<core::Vec3>& wanted,
 /// different directions.
 std::vector<std::size_t> matching_pairs(const core::Capture& reference,
                                         const core::Capture& result) {
-    const core::Scan& scan = reference.scan;
-    std::vector<std::size_t> pairs(scan.num_pairs());
+    std::vector<std::size_t> pairs(reference.scan.num_pairs());
     std::iota(pairs.begin(), pairs.end(), std::size_t{0});
-    if (scan.camera || scan.pattern != result.scan.pattern) return pairs;
-    const auto sensing = counterparts(scan.sensing.positions, result.scan.sensing.positions);
-    const auto lit = counterparts(scan.illumination.positions, result.scan.illumination.positions);
+    if (!reference.scan.has_wall() || !result.scan.has_wall()) return pairs;
+    const core::WallScan& scan = reference.scan.wall();
+    const core::WallScan& found = result.scan.wall();
+    if (scan.pattern != found.pattern) return pairs;
+    const auto sensing = counterparts(scan.sensing.positions, found.sensing.positions);
+    const auto lit = counterparts(scan.illumination.positions, found.illumination.positions);
     for (std::size_t& pair : pairs) {
         std::size_t from = sensing[scan.sensing_index(pair)];
-        if (scan.pattern == core::ScanPattern::Exhaustive) {
+        if (scan.is_exhaustive()) {
             from += lit[scan.illumination_index(pair)] * sensing.size();
         }
         pair = from;
@@ -132,21 +134,21 @@ std::vector<std::string> comparison_warnings(const core::Capture& result,
                         name,
                         largest_m));
     };
-    if (a.camera.has_value() != b.camera.has_value()) {
+    if (a.has_wall() != b.has_wall()) {
         warnings.emplace_back("one is the image of a camera, the other a scan");
-    } else if (a.pattern != b.pattern) {
+    } else if (a.pattern() != b.pattern()) {
         warnings.push_back(fmt::format("the scans differ: {} against {}",
-                                       core::enum_name(a.pattern),
-                                       core::enum_name(b.pattern)));
-    } else if (!a.camera) {
-        compare("sensing", a.sensing.positions, b.sensing.positions);
-        compare("illumination", a.illumination.positions, b.illumination.positions);
+                                       core::enum_name(a.pattern()),
+                                       core::enum_name(b.pattern())));
+    } else if (a.has_wall()) {
+        compare("sensing", a.wall().sensing.positions, b.wall().sensing.positions);
+        compare("illumination", a.wall().illumination.positions, b.wall().illumination.positions);
     }
-    if (a.opl_origin != b.opl_origin) {
+    if (a.opl_origin() != b.opl_origin()) {
         warnings.push_back(
             fmt::format("path lengths begin at the {} in one and the {} in the other",
-                        core::enum_name(a.opl_origin),
-                        core::enum_name(b.opl_origin)));
+                        core::enum_name(a.opl_origin()),
+                        core::enum_name(b.opl_origin())));
     }
     if (result.observed || reference.observed) {
         warnings.emplace_back("bins that one of the two did not observe do not count");

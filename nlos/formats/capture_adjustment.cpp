@@ -14,8 +14,9 @@ using core::Capture;
 using core::WallPoints;
 
 void set_wall_size(const std::array<double, 2>& size_m, Capture& capture) {
-    const core::ScanExtent extent = core::scan_extent(capture.scan);
-    for (WallPoints* points : {&capture.scan.sensing, &capture.scan.illumination}) {
+    core::WallScan& scan = capture.scan.wall();
+    const core::ScanExtent extent = core::scan_extent(scan);
+    for (WallPoints* points : {&scan.sensing, &scan.illumination}) {
         if (points->size() < 2) continue;
         for (int i = 0; i < 2; ++i) {
             if (!(extent.size_m[i] > 0.0)) continue;
@@ -57,10 +58,10 @@ std::vector<std::size_t> stored_order(const WallPoints& points,
 void move_histograms(const CaptureReadSettings& settings,
                      const std::string& where,
                      Capture& capture) {
-    const core::Scan& scan = capture.scan;
+    const core::WallScan& scan = capture.scan.wall();
     const std::vector<std::size_t> sensed = stored_order(scan.sensing, settings, where);
     std::vector<std::size_t> lit{0};
-    if (scan.pattern == core::ScanPattern::Exhaustive) {
+    if (scan.is_exhaustive()) {
         lit = stored_order(scan.illumination, settings, where);
     }
     const auto stored_pair = [&](std::size_t pair) {
@@ -111,7 +112,7 @@ void reverse_time(Capture& capture) {
 }
 
 void set_origin(core::OplOrigin origin, Capture& capture) {
-    capture.scan.opl_origin = origin;
+    capture.scan.wall().opl_origin = origin;
     capture.notes.push_back(fmt::format("path lengths {} the legs to laser and detector, as told",
                                         origin == core::OplOrigin::Device ? "include" : "exclude"));
 }
@@ -128,7 +129,7 @@ Capture adjust_capture(Capture capture,
                        const CaptureReadSettings& settings,
                        const std::string& where) {
     const bool moves = settings.swap_xy || settings.flip_x || settings.flip_y;
-    if (capture.scan.camera && (moves || settings.wall_size_m || settings.opl_origin)) {
+    if (!capture.scan.has_wall() && (moves || settings.wall_size_m || settings.opl_origin)) {
         throw core::Error(where,
                           "is the image of a camera",
                           "must be a scan of a relay wall for capture.wall_size_m, opl_origin, "

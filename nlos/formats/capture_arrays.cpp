@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/capture_arrays.h"
 
+#include "nlos/formats/ytal_layout.h"
+
 namespace nlos {
 
 using core::WallPoints;
 
 ArrayLayout array_layout(const core::Scan& scan) {
-    if (scan.camera) return {false, true};
-    const bool exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
-    // A single illumination point is a grid of one by one as well.
-    const bool illumination_is_grid = scan.illumination.grid || scan.illumination.size() == 1;
-    return {exhaustive, scan.sensing.grid && (!exhaustive || illumination_is_grid)};
+    return scan.visit(
+        [](const core::WallScan& points) -> ArrayLayout {
+            // A single illumination point is a grid of one by one as well.
+            const WallPoints& lit = points.illumination;
+            const bool fits = !points.is_exhaustive() || lit.grid || lit.size() == 1;
+            return {points.is_exhaustive(), points.sensing.grid && fits};
+        },
+        [](const core::ImageScan&) -> ArrayLayout {
+            return {false, true};
+        });
 }
 
 Shape point_extents(const WallPoints& points, const ArrayLayout& layout) {
@@ -20,21 +27,26 @@ Shape point_extents(const WallPoints& points, const ArrayLayout& layout) {
 }
 
 Shape histogram_shape(const core::Capture& capture) {
-    const core::Scan& scan = capture.scan;
     Shape shape{static_cast<std::size_t>(capture.time_axis.num_bins)};
-    if (scan.camera) {
-        shape.push_back(scan.camera->width());
-        shape.push_back(scan.camera->height());
-        return shape;
-    }
-    const ArrayLayout layout = array_layout(scan);
-    const auto add_extents = [&](const WallPoints& points) {
-        const Shape extents = point_extents(points, layout);
+    const auto append = [&](const Shape& extents) {
         shape.insert(shape.end(), extents.begin(), extents.end());
     };
-    if (layout.exhaustive) add_extents(scan.illumination);
-    add_extents(scan.sensing);
+    const ArrayLayout layout = array_layout(capture.scan);
+    capture.scan.visit(
+        [&](const core::WallScan& scan) {
+            if (layout.exhaustive) append(point_extents(scan.illumination, layout));
+            append(point_extents(scan.sensing, layout));
+        },
+        [&](const core::ImageScan& image) { append(image.pair_extents()); });
     return shape;
+}
+
+core::Json scene_info_of(const core::Capture& capture) {
+    core::Json scene_info = capture.scene_info;
+    if (const auto* image = capture.scan.as<core::ImageScan>()) {
+        scene_info[kCameraKey] = core::write_value(image->camera);
+    }
+    return scene_info;
 }
 
 std::vector<int> observed_array(const std::vector<core::BinRange>& observed) {

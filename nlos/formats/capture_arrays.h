@@ -23,6 +23,10 @@ Shape point_extents(const core::WallPoints& points, const ArrayLayout& layout);
 /// an image.
 Shape histogram_shape(const core::Capture& capture);
 
+/// Where the capture came from, and for an image its camera, whose grids are null: no array has a
+/// place for it.
+core::Json scene_info_of(const core::Capture& capture);
+
 /// The array observed_bins of shape (2, pairs...): first observed bins of all pairs, then the bins
 /// after their last ones. H holds 0 in all others, which means that nobody looked.
 std::vector<int> observed_array(const std::vector<core::BinRange>& observed);

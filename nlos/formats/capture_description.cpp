@@ -64,7 +64,14 @@ std::string describe_points(const char* kind, const core::WallPoints& points) {
                        size.z());
 }
 
-std::vector<std::string> describe_camera(const core::PinholeCamera& camera) {
+std::vector<std::string> describe(const core::WallScan& scan) {
+    return {fmt::format(
+                "scan: {}, {}", enum_name(scan.pattern), describe_points(" sensing", scan.sensing)),
+            "illumination: " + describe_points("", scan.illumination)};
+}
+
+std::vector<std::string> describe(const core::ImageScan& image) {
+    const core::PinholeCamera& camera = image.camera;
     return {fmt::format("camera: {} x {} pixels, {:.4g} degrees high, at {} m, looking at {} m",
                         camera.width(),
                         camera.height(),
@@ -102,15 +109,7 @@ std::string describe_velocity(const core::VelocityHistogram& velocity) {
 std::vector<std::string> describe_capture(const core::Capture& capture) {
     const core::Scan& scan = capture.scan;
     const core::TimeAxis& axis = capture.time_axis;
-    std::vector<std::string> lines;
-    if (scan.camera) {
-        lines = describe_camera(*scan.camera);
-    } else {
-        lines = {
-            fmt::format(
-                "scan: {}, {}", enum_name(scan.pattern), describe_points(" sensing", scan.sensing)),
-            "illumination: " + describe_points("", scan.illumination)};
-    }
+    std::vector<std::string> lines = scan.visit([](const auto& kind) { return describe(kind); });
     if (const auto sensor = core::recorded_sensor(capture)) {
         const std::vector<std::string> of_sensor = core::describe_sensor(*sensor);
         lines.insert(lines.end(), of_sensor.begin(), of_sensor.end());
@@ -121,10 +120,10 @@ std::vector<std::string> describe_capture(const core::Capture& capture) {
                     axis.bin_width_m,
                     axis.opl_start_m,
                     axis.opl_end_m()));
-    if (!scan.camera) {
+    if (scan.has_wall()) {
         lines.push_back(
             fmt::format("path lengths {} the legs to laser and detector",
-                        scan.opl_origin == core::OplOrigin::Device ? "include" : "exclude"));
+                        scan.opl_origin() == core::OplOrigin::Device ? "include" : "exclude"));
     }
     if (capture.observed) lines.push_back(describe_observed(capture));
     if (capture.velocity) lines.push_back(describe_velocity(*capture.velocity));
@@ -141,7 +140,7 @@ std::vector<std::string> describe_capture(const core::Capture& capture) {
         lines.push_back(
             fmt::format("counts per unit of radiance: {:.6g}", *capture.counts_per_radiance));
     }
-    if (scan.opl_origin == core::OplOrigin::RelayWall) {
+    if (scan.opl_origin() == core::OplOrigin::RelayWall) {
         // Seen at right angles from a confocal point, depth is half the path length.
         const core::BinRange hull = core::observed_hull(capture.observed, axis.num_bins);
         lines.push_back(fmt::format("depth range: {:.4g} to {:.4g} m",

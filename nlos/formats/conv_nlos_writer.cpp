@@ -30,7 +30,7 @@ using core::WallPoints;
 // ours after half a turn about the vertical axis: x becomes -x, and z target_dist - z.
 
 /// What NLOSDATA can hold: points on z = 0, with path lengths from and to the wall.
-void check_scan(const std::string& path, const core::Scan& scan) {
+void check_scan(const std::string& path, const core::WallScan& scan) {
     constexpr double kTolerance_m = 1e-6;  // other files hold single precision
     const auto refuse = [&](const std::string& found) {
         throw core::Error(path,
@@ -38,7 +38,6 @@ void check_scan(const std::string& path, const core::Scan& scan) {
                           "must be points on the wall z = 0 that looks along z, with path lengths "
                           "from and to the wall");
     };
-    if (scan.camera) refuse("the image of a camera");
     if (scan.opl_origin != core::OplOrigin::RelayWall) refuse("path lengths with device legs");
     for (const WallPoints* points : {&scan.illumination, &scan.sensing}) {
         for (std::size_t i = 0; i < points->size(); ++i) {
@@ -68,10 +67,10 @@ MatVariable number(const std::string& name, double value) {
 }
 
 MatVariable transient_variable(const Capture& capture) {
-    const core::Scan& scan = capture.scan;
+    const core::WallScan& scan = capture.scan.wall();
     std::size_t rows = scan.illumination.size();
     std::size_t columns = scan.sensing.size();
-    if (scan.pattern == core::ScanPattern::Confocal) {
+    if (scan.is_confocal()) {
         const auto grid = scan.sensing.grid.value_or(std::array<std::size_t, 2>{columns, 1});
         rows = grid[0];
         columns = grid[1];
@@ -86,8 +85,8 @@ MatVariable transient_variable(const Capture& capture) {
 
 std::vector<std::string> losses(const Capture& capture) {
     std::vector<std::string> sentences{"the unit is left out"};
-    const bool has_grid = capture.scan.sensing.grid || capture.scan.illumination.grid;
-    if (capture.scan.pattern != core::ScanPattern::Confocal && has_grid) {
+    const core::WallScan& scan = capture.scan.wall();
+    if (!scan.is_confocal() && (scan.sensing.grid || scan.illumination.grid)) {
         sentences.emplace_back("grids become lists of points");
     }
     if (const auto extras = extras_left_out(capture)) sentences.push_back(*extras);
@@ -99,7 +98,7 @@ std::vector<std::string> losses(const Capture& capture) {
 std::vector<std::string> write_conv_nlos(const std::string& path,
                                          const Capture& capture,
                                          const CaptureWriteSettings&) {
-    const core::Scan& scan = capture.scan;
+    const core::WallScan& scan = capture.scan.wall(path);
     const core::TimeAxis& axis = capture.time_axis;
     check_scan(path, scan);
     const double middle_m = 0.25 * (axis.opl_start_m + axis.opl_end_m());  // of depths
@@ -107,14 +106,13 @@ std::vector<std::string> write_conv_nlos(const std::string& path,
     std::vector<double> times;
     for (int bin = 0; bin < axis.num_bins; ++bin) times.push_back(axis.bin_center_m(bin));
     const Shape times_shape{1, times.size()};
-    std::vector<MatVariable> fields{
-        transient_variable(capture),
-        points_variable("l", scan.illumination, target_distance_m),
-        points_variable("s", scan.sensing, target_distance_m),
-        {"times", times_shape, std::move(times)},
-        number("delta", axis.bin_width_m),
-        number("is_confocal", scan.pattern == core::ScanPattern::Confocal ? 1.0 : 0.0),
-        number("target_dist", target_distance_m)};
+    std::vector<MatVariable> fields{transient_variable(capture),
+                                    points_variable("l", scan.illumination, target_distance_m),
+                                    points_variable("s", scan.sensing, target_distance_m),
+                                    {"times", times_shape, std::move(times)},
+                                    number("delta", axis.bin_width_m),
+                                    number("is_confocal", scan.is_confocal() ? 1.0 : 0.0),
+                                    number("target_dist", target_distance_m)};
     write_mat_file(path, {{"NLOSDATA", {1, 1}, std::move(fields)}});
     return losses(capture);
 }

@@ -75,7 +75,7 @@ inline constexpr const char* kExrImageFormat = "image 1";
 /// An image as the table of such a file; variance, bounce orders, frames and velocities resolved in
 /// time have no place in it.
 /// capture   with a camera
-ExrTable to_exr_image(const core::Capture& capture);
+ExrTable to_exr_image(const core::Capture& capture, const core::PinholeCamera& camera);
 
 /// The inverse of to_exr_image().
 /// throws   core::Error naming the file and what is missing or of another size

@@ -62,14 +62,14 @@ void put_observed_bins(ExrTable& table, const std::vector<core::BinRange>& obser
 }
 
 bool shows_wall(const Capture& capture) {
-    return capture.time_axis.num_bins == 1 && capture.scan.sensing.grid &&
-           capture.scan.pattern != core::ScanPattern::Exhaustive;
+    const core::WallScan& scan = capture.scan.wall();
+    return capture.time_axis.num_bins == 1 && scan.sensing.grid && !scan.is_exhaustive();
 }
 
 /// Where in the table a pair's first bin stands: rows of bins, or the wall from its front.
 std::size_t place_of(std::size_t pair, const Capture& capture, bool is_wall) {
     if (!is_wall) return pair * static_cast<std::size_t>(capture.time_axis.num_bins);
-    const auto [nx, ny] = *capture.scan.sensing.grid;
+    const auto [nx, ny] = *capture.scan.wall().sensing.grid;
     return (ny - 1 - pair % ny) * nx + (nx - 1 - pair / ny);
 }
 
@@ -117,18 +117,17 @@ void check_size(const std::string& path, const ExrTable& table, const Capture& c
                     fmt::format("must be {} x {} as its points say", width, height));
     };
     if (shows_wall(capture)) {
-        expect((*capture.scan.sensing.grid)[0], (*capture.scan.sensing.grid)[1]);
+        const auto [nx, ny] = *capture.scan.wall().sensing.grid;
+        expect(nx, ny);
     } else {
         expect(bins, capture.scan.num_pairs());
     }
 }
 
-void read_scan(const ExrAttributes& attributes, core::Scan& scan) {
+void read_scan(const ExrAttributes& attributes, core::WallScan& scan) {
     scan.pattern = attributes.choice<core::ScanPattern>("nlosPattern");
     scan.sensing = attributes.points("Sensing");
-    scan.illumination = scan.pattern == core::ScanPattern::Confocal
-                            ? scan.sensing
-                            : attributes.points("Illumination");
+    scan.illumination = scan.is_confocal() ? scan.sensing : attributes.points("Illumination");
     scan.opl_origin = attributes.choice<core::OplOrigin>("nlosOplOrigin");
     scan.laser_position = attributes.vector("nlosLaserM");
     scan.detector_position = attributes.vector("nlosDetectorM");
@@ -149,7 +148,7 @@ Capture read_exr(const std::string& path, const CaptureReadSettings& settings) {
     }
     const ExrAttributes attributes(path, table);
     Capture capture;
-    read_scan(attributes, capture.scan);
+    read_scan(attributes, capture.scan.wall());
     const bool is_wall = attributes.text("nlosLayout") == "wall";
     if (table.width > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
         throw Error(path, fmt::format("has {} columns", table.width), "must have fewer than 2^31");
@@ -183,20 +182,18 @@ CaptureFormat::Read open_exr(const std::string& path) {
     return [path](const CaptureReadSettings& settings) { return read_exr(path, settings); };
 }
 
-}  // namespace
+std::vector<std::string> write_image(const std::string& path,
+                                     const Capture& capture,
+                                     const core::ImageScan& image) {
+    write_exr_table(path, to_exr_image(capture, image.camera));
+    const bool has_joint = capture.velocity && capture.velocity->axis.with_time;
+    if (!capture.variance && capture.orders.empty() && !capture.sequence && !has_joint) return {};
+    return {"variance, orders of bounces, frames and velocities with time are left out"};
+}
 
-std::vector<std::string> write_exr(const std::string& path,
-                                   const Capture& capture,
-                                   const CaptureWriteSettings&) {
-    if (capture.scan.camera) {
-        write_exr_table(path, to_exr_image(capture));
-        const bool has_joint = capture.velocity && capture.velocity->axis.with_time;
-        if (!capture.variance && capture.orders.empty() && !capture.sequence && !has_joint) {
-            return {};
-        }
-        return {"variance, orders of bounces, frames and velocities with time are left out"};
-    }
-    const core::Scan& scan = capture.scan;
+std::vector<std::string> write_points(const std::string& path,
+                                      const Capture& capture,
+                                      const core::WallScan& scan) {
     const bool is_wall = shows_wall(capture);
     ExrTable table;
     table.width = is_wall ? (*scan.sensing.grid)[0] : capture.transient.num_bins();
@@ -208,7 +205,7 @@ std::vector<std::string> write_exr(const std::string& path,
     table.lists["nlosLaserM"] = to_floats({scan.laser_position});
     table.lists["nlosDetectorM"] = to_floats({scan.detector_position});
     put_points(table, "Sensing", scan.sensing);
-    if (scan.pattern != core::ScanPattern::Confocal) {
+    if (!scan.is_confocal()) {
         put_points(table, "Illumination", scan.illumination);
     }
     table.channels[kValues] = to_channel(capture.transient, capture, is_wall);
@@ -222,8 +219,18 @@ std::vector<std::string> write_exr(const std::string& path,
             to_channel(capture.by_order[i], capture, is_wall);
     }
     write_exr_table(path, table);
-    if (capture.sequence || capture.velocity) return {"frames and velocities are left out"};
-    return {};
+    if (!capture.sequence && !capture.velocity) return {};
+    return {"frames and velocities are left out"};
+}
+
+}  // namespace
+
+std::vector<std::string> write_exr(const std::string& path,
+                                   const Capture& capture,
+                                   const CaptureWriteSettings&) {
+    return capture.scan.visit(
+        [&](const core::WallScan& scan) { return write_points(path, capture, scan); },
+        [&](const core::ImageScan& image) { return write_image(path, capture, image); });
 }
 
 CaptureFormat exr_format() {

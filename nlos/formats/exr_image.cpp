@@ -67,7 +67,10 @@ core::Transient read_channels(const std::string& path,
 }
 
 /// The velocity axis, if the file has one; as many bins as it says must be there.
-void read_velocity(const std::string& path, const ExrTable& table, Capture& capture) {
+void read_velocity(const std::string& path,
+                   const core::PinholeCamera& camera,
+                   const ExrTable& table,
+                   Capture& capture) {
     const std::string name = "nlosVelocityAxis";
     if (!table.texts.contains(name)) return;
     core::VelocityHistogram velocity;
@@ -79,15 +82,13 @@ void read_velocity(const std::string& path, const ExrTable& table, Capture& capt
                     "must have no more than the file has channels");
     }
     velocity.axis.with_time = false;
-    velocity.values =
-        read_channels(path, *capture.scan.camera, kVelocityBin, velocity.axis.num_bins, table);
+    velocity.values = read_channels(path, camera, kVelocityBin, velocity.axis.num_bins, table);
     capture.velocity = std::move(velocity);
 }
 
 }  // namespace
 
-ExrTable to_exr_image(const Capture& capture) {
-    const core::PinholeCamera& camera = *capture.scan.camera;
+ExrTable to_exr_image(const Capture& capture, const core::PinholeCamera& camera) {
     ExrTable table;
     table.width = camera.width();
     table.height = camera.height();
@@ -103,14 +104,10 @@ ExrTable to_exr_image(const Capture& capture) {
 
 Capture from_exr_image(const std::string& path, const ExrTable& table) {
     Capture capture;
-    core::Scan& scan = capture.scan;
-    scan.pattern = core::ScanPattern::Single;
-    scan.opl_origin = core::OplOrigin::Device;
-    core::PinholeCamera& camera = scan.camera.emplace();
+    core::PinholeCamera camera;
     core::read_value(parse_object(path, table, "nlosCamera"), path + ": nlosCamera", camera);
     core::validate(camera, path + ": nlosCamera");
-    scan.laser_position = camera.light_position();
-    scan.detector_position = camera.position_m;
+    capture.scan = core::ImageScan{camera};
     if (table.width != camera.width() || table.height != camera.height()) {
         throw Error(
             path,
@@ -124,7 +121,7 @@ Capture from_exr_image(const std::string& path, const ExrTable& table) {
     ExrAttributes(path, table).read_measurement(static_cast<int>(num_bins), capture);
     capture.scene_info = parse_object(path, table, "nlosSceneInfo");
     capture.transient = read_channels(path, camera, kTimeBin, capture.time_axis.num_bins, table);
-    read_velocity(path, table, capture);
+    read_velocity(path, camera, table, capture);
     return capture;
 }
 

@@ -48,14 +48,15 @@ void write_points(NpzWriter& file,
 
 void write_scan(NpzWriter& file, const core::Scan& scan) {
     const ArrayLayout layout = array_layout(scan);
-    if (!scan.camera) {
-        write_points(file, "sensor", scan.sensing, layout);
-        write_points(file, "laser", scan.illumination, layout);
+    if (scan.has_wall()) {
+        write_points(file, "sensor", scan.wall().sensing, layout);
+        write_points(file, "laser", scan.wall().illumination, layout);
     }
-    file.write("sensor_xyz", {3}, std::span<const double>(scan.detector_position.data(), 3));
-    file.write("laser_xyz", {3}, std::span<const double>(scan.laser_position.data(), 3));
-    file.write_text("pattern", std::string(enum_name(scan.pattern)));
-    file.write_text("opl_origin", std::string(enum_name(scan.opl_origin)));
+    const core::Devices devices = scan.devices();
+    file.write("sensor_xyz", {3}, std::span<const double>(devices.detector.data(), 3));
+    file.write("laser_xyz", {3}, std::span<const double>(devices.laser.data(), 3));
+    file.write_text("pattern", std::string(enum_name(scan.pattern())));
+    file.write_text("opl_origin", std::string(enum_name(scan.opl_origin())));
 }
 
 Capture read_npz(const ArrayReader& file, const CaptureReadSettings& settings) {
@@ -95,8 +96,6 @@ std::vector<std::string> write_npz(const std::string& path,
                                    const Capture& capture,
                                    const CaptureWriteSettings&) {
     const Shape shape = histogram_shape(capture);
-    core::Json scene_info = capture.scene_info;
-    if (capture.scan.camera) scene_info[kCameraKey] = core::write_value(*capture.scan.camera);
 
     NpzWriter file(path);
     write_transient(file, "H", shape, capture.transient);
@@ -104,8 +103,9 @@ std::vector<std::string> write_npz(const std::string& path,
     file.write_real("t_start", capture.time_axis.opl_start_m);
     file.write_real("delta_t", capture.time_axis.bin_width_m);
     file.write_text("unit", std::string(enum_name(capture.unit)));
-    file.write_text("scene_info",
-                    scene_info.dump(-1, ' ', false, core::Json::error_handler_t::replace));
+    file.write_text(
+        "scene_info",
+        scene_info_of(capture).dump(-1, ' ', false, core::Json::error_handler_t::replace));
     if (capture.counts_per_radiance) {
         file.write_real("counts_per_radiance", *capture.counts_per_radiance);
     }

@@ -36,7 +36,7 @@ struct StanfordScan {
 
 /// Throws core::Error that names `path` unless the scan is such a square, whose path lengths
 /// exclude the legs to the devices.
-StanfordScan stanford_scan(const std::string& path, const core::Scan& scan) {
+StanfordScan stanford_scan(const std::string& path, const core::WallScan& scan) {
     constexpr double kTolerance_m = 1e-6;  // other files hold single precision
     const auto refuse = [&](const std::string& found) {
         throw core::Error(path,
@@ -44,7 +44,6 @@ StanfordScan stanford_scan(const std::string& path, const core::Scan& scan) {
                           "must be a confocal square of points on z = 0 around the origin, ends "
                           "included, with path lengths from and to the wall");
     };
-    if (scan.camera) refuse("the image of a camera");
     if (scan.pattern != core::ScanPattern::Confocal) {
         refuse(fmt::format("a scan that is {}", enum_name(scan.pattern)));
     }
@@ -118,7 +117,7 @@ std::vector<std::string> losses(const Capture& capture,
 std::vector<std::string> write_stanford_2018(const std::string& path,
                                              const Capture& capture,
                                              const CaptureWriteSettings&) {
-    const StanfordScan square = stanford_scan(path, capture.scan);
+    const StanfordScan square = stanford_scan(path, capture.scan.wall(path));
     const bool is_integer = fits_uint16(capture.transient);
     MatVariable data{"rect_data", {square.side, square.side, capture.transient.num_bins()}, {}};
     const auto pair = [&](std::size_t i, std::size_t j) { return square.pair(i, j); };
@@ -148,7 +147,7 @@ std::vector<std::string> write_stanford_fk_2019(const std::string& path,
                                                 const Capture& capture,
                                                 const CaptureWriteSettings&) {
     constexpr const char* kWidth = "nlos_width";  // along x and y, first to last point [m]
-    const StanfordScan square = stanford_scan(path, capture.scan);
+    const StanfordScan square = stanford_scan(path, capture.scan.wall(path));
     const std::vector<double> axis = own_axis(capture);
     const std::vector<double> width(2, 2.0 * square.half_width_m);
     Hdf5Writer file(path, mat73_block());

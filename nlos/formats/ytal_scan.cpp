@@ -133,26 +133,24 @@ HFormat read_h_format(const ArrayReader& file, bool lists) {
 bool read_camera(const ArrayReader& file, Capture& capture) {
     const bool has_points = file.has("sensor_grid_xyz") || file.has("laser_grid_xyz");
     if (has_points || !capture.scene_info.contains(kCameraKey)) return false;
-    core::Scan& scan = capture.scan;
-    scan.pattern = core::ScanPattern::Single;
-    core::read_value(
-        capture.scene_info[kCameraKey], file.where("scene_info: camera"), scan.camera.emplace());
-    core::validate(*scan.camera, file.where("scene_info: camera"));
+    core::PinholeCamera camera;
+    core::read_value(capture.scene_info[kCameraKey], file.where("scene_info: camera"), camera);
+    core::validate(camera, file.where("scene_info: camera"));
     const Shape shape = file.shape("H");
-    if (shape.size() != 3 || shape[1] != scan.camera->width() ||
-        shape[2] != scan.camera->height()) {
+    if (shape.size() != 3 || shape[1] != camera.width() || shape[2] != camera.height()) {
         throw Error(file.where("H"),
                     "has shape " + shape_text(shape),
                     fmt::format("must have shape (T, {}, {}) as the camera's resolution says",
-                                scan.camera->width(),
-                                scan.camera->height()));
+                                camera.width(),
+                                camera.height()));
     }
+    capture.scan = core::ImageScan{camera};
     return true;
 }
 
 /// Finds out how points pair up and checks that H has one histogram per pair.
 void read_wall_scan(const ArrayReader& file, Capture& capture) {
-    core::Scan& scan = capture.scan;
+    core::WallScan& scan = capture.scan.wall();
     scan.sensing = read_positions(file, "sensor_grid_xyz");
     scan.illumination = read_positions(file, "laser_grid_xyz");
     read_sensing_normals(file, scan.sensing, capture);
@@ -174,7 +172,7 @@ void read_wall_scan(const ArrayReader& file, Capture& capture) {
                                 scan.sensing.size()),
                     "must be one point, the sensor points, or belong to an exhaustive H");
     }
-    if (scan.pattern != core::ScanPattern::Confocal) {
+    if (!scan.is_confocal()) {
         read_illumination_normals(file, scan.sensing, scan.illumination, capture);
     }
 
@@ -209,15 +207,14 @@ core::OplOrigin read_opl_origin(const ArrayReader& file, Capture& capture) {
 }
 
 void read_devices(const ArrayReader& file, Capture& capture) {
-    capture.scan.opl_origin = read_opl_origin(file, capture);
-    const bool device = capture.scan.opl_origin == core::OplOrigin::Device;
-    if (device || file.has("laser_xyz")) {
-        capture.scan.laser_position = read_position(file, "laser_xyz");
-    }
+    core::WallScan& scan = capture.scan.wall();
+    scan.opl_origin = read_opl_origin(file, capture);
+    const bool device = scan.opl_origin == core::OplOrigin::Device;
+    if (device || file.has("laser_xyz")) scan.laser_position = read_position(file, "laser_xyz");
     if (device || file.has("sensor_xyz")) {
-        capture.scan.detector_position = read_position(file, "sensor_xyz");
+        scan.detector_position = read_position(file, "sensor_xyz");
     }
-    if (!capture.scan.laser_position.allFinite() || !capture.scan.detector_position.allFinite()) {
+    if (!scan.laser_position.allFinite() || !scan.detector_position.allFinite()) {
         throw Error(
             file.path() + ": laser_xyz, sensor_xyz", "are not finite", "must be numbers [m]");
     }
@@ -226,7 +223,8 @@ void read_devices(const ArrayReader& file, Capture& capture) {
 }  // namespace
 
 void read_ytal_scan(const ArrayReader& file, Capture& capture) {
-    if (!read_camera(file, capture)) read_wall_scan(file, capture);
+    if (read_camera(file, capture)) return;  // the camera is the device
+    read_wall_scan(file, capture);
     read_devices(file, capture);
 }
 

@@ -108,27 +108,26 @@ std::vector<std::string> write_ytal(const std::string& path,
     const core::Scan& scan = capture.scan;
     const ArrayLayout layout = array_layout(scan);
     const Shape h_shape = histogram_shape(capture);
-    core::Json scene_info = capture.scene_info;
-    if (scan.camera) scene_info[kCameraKey] = core::write_value(*scan.camera);
+    core::Json scene_info = scene_info_of(capture);
     if (settings.for_ytal) scene_info[kUnitKey] = enum_name(capture.unit);
 
     Hdf5Writer file(path);
     write_transient(file, "H", h_shape, capture.transient);
     file.write_enum("H_format", h_format_members(), static_cast<int>(h_format(layout)));
-    file.write("sensor_xyz", {3}, to_floats({scan.detector_position}));
-    file.write("laser_xyz", {3}, to_floats({scan.laser_position}));
-    if (scan.camera) {
+    file.write("sensor_xyz", {3}, to_floats({scan.devices().detector}));
+    file.write("laser_xyz", {3}, to_floats({scan.devices().laser}));
+    if (scan.has_wall()) {
+        write_points(file, "sensor", scan.wall().sensing, layout);
+        write_points(file, "laser", scan.wall().illumination, layout);
+    } else {
         write_no_points(file, "sensor");
         write_no_points(file, "laser");
-    } else {
-        write_points(file, "sensor", scan.sensing, layout);
-        write_points(file, "laser", scan.illumination, layout);
     }
     file.write_enum("volume_format", volume_format_members(), kVolumeFormatXYZ3);
     file.write_real("delta_t", capture.time_axis.bin_width_m);
     file.write_real("t_start", capture.time_axis.opl_start_m);
     file.write_bool("t_accounts_first_and_last_bounces",
-                    scan.opl_origin == core::OplOrigin::Device);
+                    scan.opl_origin() == core::OplOrigin::Device);
     file.write_text("scene_info", scene_info_text(scene_info));
     const bool has_own = write_own_group(file, h_shape, capture, settings);
     file.finish();

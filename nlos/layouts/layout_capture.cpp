@@ -33,7 +33,7 @@ void read_devices(const LayoutFiles& files,
         value = Vec3(values.data());
         return true;
     };
-    core::Scan& scan = capture.scan;
+    core::WallScan& scan = capture.scan.wall();
     bool known = position(devices.laser, scan.laser_position);
     known = position(devices.detector, scan.detector_position) && known;
     if (!devices.position_m.empty()) {
@@ -131,7 +131,7 @@ Capture read_one(const std::string& path,
     }
     Capture capture;
     read_devices(files, layout, settings, capture);
-    const PairNumbers numbers = read_pairs(files, layout, *array, settings, capture.scan);
+    const PairNumbers numbers = read_pairs(files, layout, *array, settings, capture.scan.wall());
     capture.time_axis = read_axis(files, layout.bins, *array->extent("t"), settings);
     Histograms histograms =
         read_histograms(files, *array, numbers, capture.scan.num_pairs(), settings.frame);

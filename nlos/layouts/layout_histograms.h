@@ -78,7 +78,7 @@ PairNumbers read_pairs(const LayoutFiles& files,
                        const Layout& layout,
                        const HistogramArray& array,
                        const CaptureReadSettings& settings,
-                       core::Scan& scan);
+                       core::WallScan& scan);
 
 /// The axis of path lengths that a layout states for `count` bins.
 core::TimeAxis read_axis(const LayoutFiles& files,

@@ -29,7 +29,7 @@ PointAxes point_axes(const LayoutFiles& files,
 }
 
 core::ScanPattern pattern_of(const Layout& layout,
-                             const core::Scan& scan,
+                             const core::WallScan& scan,
                              const PairNumbers& numbers,
                              bool has_illumination_axes) {
     switch (layout.pattern) {
@@ -92,7 +92,7 @@ PairNumbers read_pairs(const LayoutFiles& files,
                        const Layout& layout,
                        const HistogramArray& array,
                        const CaptureReadSettings& settings,
-                       core::Scan& scan) {
+                       core::WallScan& scan) {
     // The devices stand on the side of the wall on which the hidden scene is.
     const std::optional<Vec3> towards =
         scan.opl_origin == core::OplOrigin::Device

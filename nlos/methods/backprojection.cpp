@@ -13,7 +13,7 @@ bool takes_fast_way(const MethodInput& input) {
            common_lattice(*input.wall.grid, input.axes.y_m).has_value();
 }
 
-std::vector<double> device_legs(const core::Scan& scan,
+std::vector<double> device_legs(const core::WallScan& scan,
                                 const core::WallPoints& points,
                                 const core::Vec3& device) {
     std::vector<double> legs(points.size(), 0.0);
@@ -39,7 +39,7 @@ void run_fast(const MethodInput& input,
 }
 
 void run_general(const MethodInput& input, Compensation compensation, std::span<float> values) {
-    const core::Scan& scan = input.scan;
+    const core::WallScan& scan = input.scan;
     const PairList<float> data{scan.pattern,
                                input.time_axis,
                                input.transient.values(),

@@ -27,7 +27,7 @@ template <class Real>
 struct PairList {
     core::ScanPattern pattern;
     core::TimeAxis time_axis;
-    std::span<const Real> histograms;         ///< [pair][bin], pairs as in core::Scan
+    std::span<const Real> histograms;         ///< [pair][bin], pairs as in core::WallScan
     std::vector<core::Vec3> illumination;     ///< [m]; confocal: the same as `sensing`
     std::vector<core::Vec3> sensing;          ///< [m]
     std::vector<double> illumination_legs_m;  ///< laser to each point, part of the axis

@@ -138,7 +138,7 @@ std::optional<std::string> unobserved_warning(const ReconstructSettings& setting
         core::enum_name(settings.method));
 }
 
-std::optional<std::string> few_pairs_warning(const core::Scan& scan) {
+std::optional<std::string> few_pairs_warning(const core::WallScan& scan) {
     constexpr std::size_t kFewPairs = 24;
     const std::size_t pairs = scan.num_pairs();
     if (pairs > kFewPairs) return std::nullopt;

@@ -31,7 +31,7 @@ struct Measurement {
 
 /// What every reconstruction method gets: measurements, where they were taken, what to fill.
 struct MethodInput {
-    const core::Scan& scan;
+    const core::WallScan& scan;
     const core::TimeAxis& time_axis;
     const core::Transient& transient;  ///< (num_pairs, num_bins)
     const WallFrame& wall;

@@ -157,6 +157,6 @@ std::optional<std::string> unobserved_warning(const ReconstructSettings& setting
 
 /// Says of a scan of few pairs of points that it tells distances rather than directions; nothing of
 /// others.
-std::optional<std::string> few_pairs_warning(const core::Scan& scan);
+std::optional<std::string> few_pairs_warning(const core::WallScan& scan);
 
 }  // namespace nlos

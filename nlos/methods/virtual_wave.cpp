@@ -67,7 +67,7 @@ std::size_t oversampling(const core::TimeAxis& axis, const PhasorSettings& setti
 
 }  // namespace
 
-double wall_pitch_m(const core::Scan& scan, const WallFrame& wall) {
+double wall_pitch_m(const core::WallScan& scan, const WallFrame& wall) {
     if (wall.grid) return std::max(wall.grid->pitch_m[0], wall.grid->pitch_m[1]);
     const double area = (wall.max_m[0] - wall.min_m[0]) * (wall.max_m[1] - wall.min_m[1]);
     const auto points =
@@ -75,7 +75,7 @@ double wall_pitch_m(const core::Scan& scan, const WallFrame& wall) {
     return std::sqrt(area / points);
 }
 
-double default_wavelength_m(const core::Scan& scan,
+double default_wavelength_m(const core::WallScan& scan,
                             const WallFrame& wall,
                             const core::TimeAxis& axis) {
     const double pitches = scan.pattern == core::ScanPattern::Confocal ? 6.0 : 4.0;

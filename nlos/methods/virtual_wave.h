@@ -30,12 +30,12 @@ struct VirtualWave {
 
 /// Distance of neighbouring wall points [m]: the grid's, or that of as many points spread evenly
 /// over the footprint.
-double wall_pitch_m(const core::Scan& scan, const WallFrame& wall);
+double wall_pitch_m(const core::WallScan& scan, const WallFrame& wall);
 
 /// The wavelength to use when none is set: long enough for the wall's pitch to sample the wave,
 /// 4 pitches for single and exhaustive scans (twice what is needed), 6 for confocal ones (1.5 times
 /// what is needed), and never below 4 bins.
-double default_wavelength_m(const core::Scan& scan,
+double default_wavelength_m(const core::WallScan& scan,
                             const WallFrame& wall,
                             const core::TimeAxis& axis);
 

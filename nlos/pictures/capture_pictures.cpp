@@ -25,15 +25,16 @@ constexpr std::size_t kMaxGates = 4;      // of an image's histogram, drawn one 
 constexpr float kBackground = std::numeric_limits<float>::quiet_NaN();  // what nobody observed
 
 ImagePanel streak_panel(const core::Capture& capture,
+                        const core::WallScan& scan,
                         const std::optional<WallGrid>& grid,
                         const std::array<std::size_t, 2>& bins) {
-    std::vector<std::size_t> points(grid ? grid->size[0] : capture.scan.scanned_points().size());
+    std::vector<std::size_t> points(grid ? grid->size[0] : scan.scanned_points().size());
     for (std::size_t i = 0; i < points.size(); ++i) {
         points[i] = grid ? grid->point(i, grid->size[1] / 2) : i;
     }
     ImagePanel panel =
         image_of(points.size(), bins[1] - bins[0], [&](std::size_t i, std::size_t bin) {
-            return capture.transient.histogram(pair_of(capture.scan, points[i]))[bins[0] + bin];
+            return capture.transient.histogram(pair_of(scan, points[i]))[bins[0] + bin];
         });
     panel.title = grid ? "Streak of the middle row" : "Streak of all points";
     panel.x_label = grid ? "wall x [m]" : "number of the point";
@@ -49,7 +50,7 @@ ImagePanel streak_panel(const core::Capture& capture,
     panel.value_range = light_range(panel.values, kBrightestShare);
     choose_scale(panel);
     for (std::size_t i = 0; i < panel.values.size(); ++i) {
-        const std::size_t pair = pair_of(capture.scan, points[i % points.size()]);
+        const std::size_t pair = pair_of(scan, points[i % points.size()]);
         const auto bin = static_cast<int>(bins[0] + i / points.size());
         if (!capture.observed_range(pair).holds(bin)) panel.values[i] = kBackground;
     }
@@ -57,12 +58,10 @@ ImagePanel streak_panel(const core::Capture& capture,
 }
 
 Plot mean_plot(const core::Capture& capture,
+               const std::string& title,
                const std::vector<double>& mean,
                const std::array<std::size_t, 2>& bins) {
-    Plot plot = area_plot(
-        capture.scan.camera ? "Mean transient of all pixels" : "Mean transient of all points",
-        "path length [m]",
-        light_per_bin_label(capture));
+    Plot plot = area_plot(title, "path length [m]", light_per_bin_label(capture));
     for (std::size_t bin = bins[0]; bin < bins[1]; ++bin) {
         plot.lines.front().add(capture.time_axis.bin_center_m(static_cast<double>(bin)), mean[bin]);
     }
@@ -71,11 +70,10 @@ Plot mean_plot(const core::Capture& capture,
 
 /// The image of all light, the mean transient, and the image in a few gates that share the time
 /// in which there is light.
-std::vector<Panel> image_panels(const core::Capture& capture) {
-    const core::PinholeCamera& camera = *capture.scan.camera;
+std::vector<Panel> light_panels(const core::Capture& capture, const core::ImageScan& image) {
     const std::size_t num_bins = capture.transient.num_bins();
     const auto gated = [&](const std::string& title, const std::array<std::size_t, 2>& bins) {
-        ImagePanel panel = gated_panel(camera, capture.transient, bins);
+        ImagePanel panel = gated_panel(image.camera, capture.transient, bins);
         panel.title = title;
         panel.value_label = light_label(capture);
         return panel;
@@ -84,7 +82,7 @@ std::vector<Panel> image_panels(const core::Capture& capture) {
     std::vector<Panel> panels{gated("Light of all bins", {0, num_bins})};
     const std::vector<double> mean = mean_transient(capture);
     const std::array<std::size_t, 2> shown = shown_bins(mean);
-    panels.emplace_back(mean_plot(capture, mean, shown));
+    panels.emplace_back(mean_plot(capture, "Mean transient of all pixels", mean, shown));
     const std::size_t num_gates = std::min(kMaxGates, shown[1] - shown[0]);
     for (std::size_t i = 0; i < num_gates; ++i) {
         const std::size_t first = shown[0] + i * (shown[1] - shown[0]) / num_gates;
@@ -98,22 +96,23 @@ std::vector<Panel> image_panels(const core::Capture& capture) {
 }
 
 /// Streak image, light over the wall and mean transient, as far as there are these.
-std::vector<Panel> scan_panels(const core::Capture& capture) {
-    const std::optional<WallGrid> grid = derive_wall_frame(capture.scan).grid;
+std::vector<Panel> light_panels(const core::Capture& capture, const core::WallScan& scan) {
+    const std::optional<WallGrid> grid = derive_wall_frame(scan).grid;
     const std::vector<double> mean = mean_transient(capture);
     const std::array<std::size_t, 2> bins = shown_bins(mean);
     const bool has_time = capture.transient.num_bins() > 1;
     std::vector<Panel> panels;
-    if (has_time || !grid) panels.emplace_back(streak_panel(capture, grid, bins));
+    if (has_time || !grid) panels.emplace_back(streak_panel(capture, scan, grid, bins));
     if (grid) panels.emplace_back(light_panel(capture, capture.transient, *grid));
-    if (has_time) panels.emplace_back(mean_plot(capture, mean, bins));
+    if (has_time) {
+        panels.emplace_back(mean_plot(capture, "Mean transient of all points", mean, bins));
+    }
     return panels;
 }
 
 }  // namespace
 
-std::string encode_preview_png(const core::Capture& capture) {
-    const core::PinholeCamera& camera = *capture.scan.camera;
+std::string encode_preview_png(const core::Capture& capture, const core::PinholeCamera& camera) {
     const ImagePanel panel =
         gated_panel(camera, capture.transient, {0, capture.transient.num_bins()});
     const double white = (*panel.value_range)[1];
@@ -137,7 +136,7 @@ std::vector<Panel> capture_panels(const core::Capture& capture) {
         }
     }
     if (panels.empty()) {
-        panels = capture.scan.camera ? image_panels(capture) : scan_panels(capture);
+        panels = capture.scan.visit([&](const auto& kind) { return light_panels(capture, kind); });
     }
     const std::vector<Panel> velocities = velocity_panels(capture);
     panels.insert(panels.end(), velocities.begin(), velocities.end());

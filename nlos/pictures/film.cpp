@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -17,9 +18,7 @@ namespace {
 
 constexpr double kBrightestOfFilm = 0.001;  // of all values, drawn in the last colour
 
-std::optional<WallGrid> grid_of(const core::Scan& scan) {
-    return scan.camera ? std::nullopt : derive_wall_frame(scan).grid;
-}
+using Bins = std::array<std::size_t, 2>;  // first and one past the last
 
 /// One scale for all: of light that is faint in any of them, one that shows it.
 void share_scale(double brightest_share, std::vector<ImagePanel>& images) {
@@ -40,11 +39,12 @@ void share_scale(double brightest_share, std::vector<ImagePanel>& images) {
 
 /// Light of bins [first, last) of every point of the wall.
 ImagePanel wall_image(const core::Capture& capture,
+                      const core::WallScan& scan,
                       const WallGrid& grid,
-                      const std::array<std::size_t, 2>& bins) {
+                      const Bins& bins) {
     std::vector<float> sums;
     for (std::size_t point = 0; point < grid.size[0] * grid.size[1]; ++point) {
-        const std::size_t pair = pair_of(capture.scan, point);
+        const std::size_t pair = pair_of(scan, point);
         const core::BinRange observed = capture.observed_range(pair);
         float sum = 0.0F;
         bool is_seen = false;
@@ -57,7 +57,39 @@ ImagePanel wall_image(const core::Capture& capture,
     return wall_panel(grid, sums);
 }
 
-std::string time_text(const core::Capture& capture, const std::array<std::size_t, 2>& bins) {
+/// What draws bins of a capture's light. The capture has to be a picture.
+std::function<ImagePanel(const Bins&)> bin_drawer(const core::Capture& capture) {
+    using Draw = std::function<ImagePanel(const Bins&)>;
+    return capture.scan.visit(
+        [&](const core::WallScan& scan) -> Draw {
+            return [&, grid = *derive_wall_frame(scan).grid](const Bins& bins) {
+                return wall_image(capture, scan, grid, bins);
+            };
+        },
+        [&](const core::ImageScan& image) -> Draw {
+            return [&](const Bins& bins) {
+                return gated_panel(image.camera, capture.transient, bins);
+            };
+        });
+}
+
+/// What draws all light of a frame. The capture has to be a picture.
+std::function<ImagePanel(const core::Transient&)> frame_drawer(const core::Capture& capture) {
+    using Draw = std::function<ImagePanel(const core::Transient&)>;
+    return capture.scan.visit(
+        [&](const core::WallScan& scan) -> Draw {
+            return [&, grid = *derive_wall_frame(scan).grid](const core::Transient& frame) {
+                return light_panel(capture, frame, grid);
+            };
+        },
+        [](const core::ImageScan& image) -> Draw {
+            return [&](const core::Transient& frame) {
+                return gated_panel(image.camera, frame, {0, frame.num_bins()});
+            };
+        });
+}
+
+std::string time_text(const core::Capture& capture, const Bins& bins) {
     const double middle_m =
         capture.time_axis.bin_begin_m(0.5 * static_cast<double>(bins[0] + bins[1]));
     return fmt::format(
@@ -65,14 +97,13 @@ std::string time_text(const core::Capture& capture, const std::array<std::size_t
 }
 
 std::vector<ImagePanel> bin_panels(const core::Capture& capture, std::size_t most) {
-    const std::optional<WallGrid> grid = grid_of(capture.scan);
+    const auto draw = bin_drawer(capture);
     const auto [first, last] = shown_bins(mean_transient(capture));
     const std::size_t per_frame = (last - first + most - 1) / most;
     std::vector<ImagePanel> images;
     for (std::size_t begin = first; begin < last; begin += per_frame) {
         const std::array bins{begin, std::min(last, begin + per_frame)};
-        ImagePanel image = grid ? wall_image(capture, *grid, bins)
-                                : gated_panel(*capture.scan.camera, capture.transient, bins);
+        ImagePanel image = draw(bins);
         image.title = time_text(capture, bins);
         image.value_label = per_frame == 1 ? light_per_bin_label(capture) : light_label(capture);
         image.value_scale = ValueScale::Gamma;
@@ -91,10 +122,11 @@ std::string axis_text(const core::TimeAxis& axis) {
 ImagePanel light_panel(const core::Capture& capture,
                        const core::Transient& transient,
                        const WallGrid& grid) {
+    const core::WallScan& scan = capture.scan.wall();
     std::vector<double> light(grid.size[0] * grid.size[1], 0.0);
     std::vector<int> seen(light.size(), 0);  // bins
-    for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
-        const std::size_t point = point_of(capture.scan, pair);
+    for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
+        const std::size_t point = point_of(scan, pair);
         for (const float value : transient.histogram(pair)) light[point] += value;
         seen[point] += capture.observed_range(pair).size();
     }
@@ -103,8 +135,8 @@ ImagePanel light_panel(const core::Capture& capture,
     }
     ImagePanel panel = wall_panel(grid, {light.begin(), light.end()});
     panel.title = "Light over the wall, all bins";
-    if (capture.scan.pattern == core::ScanPattern::Exhaustive) {
-        panel.title += shows_lit_points(capture.scan) ? " and sensing points" : " and lit points";
+    if (scan.is_exhaustive()) {
+        panel.title += shows_lit_points(scan) ? " and sensing points" : " and lit points";
     }
     panel.value_label = light_label(capture);
     return panel;
@@ -126,17 +158,14 @@ ImagePanel gated_panel(const core::PinholeCamera& camera,
 
 std::vector<ImagePanel> sequence_panels(const core::Capture& capture, std::size_t most) {
     const core::FrameSequence& sequence = *capture.sequence;
-    const std::optional<WallGrid> grid = grid_of(capture.scan);
-    if (!capture.scan.camera && !grid) return {};
+    if (!is_picture(capture.scan)) return {};
+    const auto draw = frame_drawer(capture);
     const std::size_t count = sequence.frames.size();
     const std::size_t num_shown = std::min(most, count);
     std::vector<ImagePanel> images;
     for (std::size_t i = 0; i < num_shown; ++i) {
         const std::size_t frame = num_shown > 1 ? i * (count - 1) / (num_shown - 1) : 0;
-        const core::Transient& transient = sequence.frames[frame];
-        ImagePanel image =
-            grid ? light_panel(capture, transient, *grid)
-                 : gated_panel(*capture.scan.camera, transient, {0, transient.num_bins()});
+        ImagePanel image = draw(sequence.frames[frame]);
         core::TimeAxis axis = capture.time_axis;
         axis.opl_start_m -= static_cast<double>(count - 1 - frame) * sequence.gate_step_m;
         image.title = fmt::format("Frame {}: {}", frame, axis_text(axis));
@@ -148,7 +177,7 @@ std::vector<ImagePanel> sequence_panels(const core::Capture& capture, std::size_
 }
 
 std::vector<ImagePanel> film_panels(const core::Capture& capture, std::size_t most) {
-    if (!capture.scan.camera && !grid_of(capture.scan)) {
+    if (!is_picture(capture.scan)) {
         throw core::Error("film", "found a list of points", "must be a grid of points or a camera");
     }
     if (capture.sequence) return sequence_panels(capture, most);

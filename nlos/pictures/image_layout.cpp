@@ -39,4 +39,10 @@ ImagePanel wall_panel(const WallGrid& grid, const std::vector<float>& of_points)
     return panel;
 }
 
+bool is_picture(const core::Scan& scan) {
+    return scan.visit(
+        [](const core::WallScan& wall) { return derive_wall_frame(wall).grid.has_value(); },
+        [](const core::ImageScan&) { return true; });
+}
+
 }  // namespace nlos

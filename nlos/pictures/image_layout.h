@@ -3,7 +3,7 @@
 
 #include "nlos/pictures/picture.h"
 #include "nlos/preparation/wall_frame.h"
-#include "renderer/core/capture/pinhole_camera.h"
+#include "renderer/core/capture/scan.h"
 
 #include <array>
 #include <cstddef>
@@ -26,5 +26,8 @@ ImagePanel camera_panel(const core::PinholeCamera& camera, const std::vector<flo
 ///
 /// of_points   in the capture's order
 ImagePanel wall_panel(const WallGrid& grid, const std::vector<float>& of_points);
+
+/// Whether values of its pairs make an image: all but lists of wall points.
+bool is_picture(const core::Scan& scan);
 
 }  // namespace nlos

@@ -26,18 +26,18 @@ std::string light_per_bin_label(const core::Capture& capture) {
     return is_rendered(capture) ? kRenderedRadiancePerBin : "radiance per bin";
 }
 
-bool shows_lit_points(const core::Scan& scan) {
+bool shows_lit_points(const core::WallScan& scan) {
     return &scan.scanned_points() == &scan.illumination;
 }
 
-std::size_t pair_of(const core::Scan& scan, std::size_t point) {
+std::size_t pair_of(const core::WallScan& scan, std::size_t point) {
     if (scan.pattern != core::ScanPattern::Exhaustive) return point;
     const std::size_t num_sensing = scan.sensing.size();
     return shows_lit_points(scan) ? point * num_sensing + num_sensing / 2
                                   : scan.illumination.size() / 2 * num_sensing + point;
 }
 
-std::size_t point_of(const core::Scan& scan, std::size_t pair) {
+std::size_t point_of(const core::WallScan& scan, std::size_t pair) {
     return shows_lit_points(scan) ? scan.illumination_index(pair) : scan.sensing_index(pair);
 }
 

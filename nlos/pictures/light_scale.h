@@ -26,14 +26,14 @@ std::string light_label(const core::Capture& capture);
 /// The label of single bins.
 std::string light_per_bin_label(const core::Capture& capture);
 
-/// Pictures of the wall show `Scan::scanned_points`. Whether these are the illumination points:
-bool shows_lit_points(const core::Scan& scan);
+/// Pictures of the wall show `WallScan::scanned_points`. Whether these are the illumination points:
+bool shows_lit_points(const core::WallScan& scan);
 
 /// The pair that shows a point; of exhaustive scans the one with the middle of the other points.
-std::size_t pair_of(const core::Scan& scan, std::size_t point);
+std::size_t pair_of(const core::WallScan& scan, std::size_t point);
 
 /// The point that a pair is of.
-std::size_t point_of(const core::Scan& scan, std::size_t pair);
+std::size_t point_of(const core::WallScan& scan, std::size_t pair);
 
 /// The mean histogram over all pairs that observed a bin; 0 where none did.
 std::vector<double> mean_transient(const core::Capture& capture);

@@ -31,7 +31,7 @@ std::vector<Panel> velocity_panels(const core::Capture& capture);
 /// The image of a camera, all bins together, as a screen shows it: grey, gamma 2.2, one pixel in a
 /// hundred white, small images enlarged.
 /// returns   the bytes of a PNG file
-std::string encode_preview_png(const core::Capture& capture);
+std::string encode_preview_png(const core::Capture& capture, const core::PinholeCamera& camera);
 
 /// True depth, reconstructed depth on the same scale, and their signed difference.
 /// throws    core::Error when the two have different columns

@@ -73,8 +73,11 @@ Range symmetric_range(const std::vector<float>& values) {
 
 ImagePanel velocity_image(const core::Scan& scan, const core::VelocityHistogram& velocity) {
     const std::vector<float> means = mean_velocities(velocity);
-    ImagePanel panel = scan.camera ? camera_panel(*scan.camera, means)
-                                   : wall_panel(*derive_wall_frame(scan).grid, means);
+    ImagePanel panel = scan.visit(
+        [&](const core::WallScan& wall) {
+            return wall_panel(*derive_wall_frame(wall).grid, means);
+        },
+        [&](const core::ImageScan& image) { return camera_panel(image.camera, means); });
     panel.title = "Mean path velocity";
     panel.value_label = "path velocity [m/s]";
     panel.colour_map = ColourMap::Diverging;
@@ -139,10 +142,8 @@ ImagePanel velocity_over_time(const core::TimeAxis& time, const core::VelocityHi
 std::vector<Panel> velocity_panels(const core::Capture& capture) {
     std::vector<Panel> panels;
     if (!capture.velocity) return panels;
-    if (capture.scan.camera || derive_wall_frame(capture.scan).grid) {
-        if (capture.scan.pattern != core::ScanPattern::Exhaustive) {
-            panels.emplace_back(velocity_image(capture.scan, *capture.velocity));
-        }
+    if (is_picture(capture.scan) && capture.scan.pattern() != core::ScanPattern::Exhaustive) {
+        panels.emplace_back(velocity_image(capture.scan, *capture.velocity));
     }
     panels.emplace_back(spectrum_plot(*capture.velocity));
     if (capture.velocity->axis.with_time && capture.time_axis.num_bins > 1) {

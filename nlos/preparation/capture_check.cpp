@@ -28,14 +28,6 @@ constexpr double kCheckSignificance = 3.0;  // standard deviations
 constexpr double kFactorTolerance = 0.15;   // of what first light says of lengths
 constexpr std::size_t kMinLitValues = 16;   // fewer may be whole numbers by chance
 
-const core::Vec3& illumination_point(const core::Scan& scan, std::size_t pair) {
-    return scan.illumination.positions[scan.illumination_index(pair)];
-}
-
-const core::Vec3& sensing_point(const core::Scan& scan, std::size_t pair) {
-    return scan.sensing.positions[scan.sensing_index(pair)];
-}
-
 /// Constant background of each pair; 0 where it cannot be told.
 std::vector<double> ambient_of(const core::Capture& capture) {
     if (capture.unit == core::TransientUnit::Counts) {
@@ -64,9 +56,9 @@ struct EarlyLight {
 
 EarlyLight early_light_of(const core::Capture& capture, std::size_t pair, double ambient) {
     const core::TimeAxis& axis = capture.time_axis;
-    const double shortest =
-        (illumination_point(capture.scan, pair) - sensing_point(capture.scan, pair)).norm() +
-        capture.scan.device_legs_m(pair);
+    const core::WallScan& scan = capture.scan.wall();
+    const double shortest = (scan.illumination_point(pair) - scan.sensing_point(pair)).norm() +
+                            scan.device_legs_m(pair);
     const auto seen = capture.observed_values(pair);
     const Eigen::Map<const Eigen::ArrayXf> values(seen.data(),
                                                   static_cast<Eigen::Index>(seen.size()));
@@ -119,7 +111,7 @@ bool has_clear_onset(const core::Capture& capture, std::size_t pair, double ambi
 std::optional<std::string> fast_onset(const core::Capture& capture,
                                       const std::vector<double>& ambient,
                                       const std::vector<std::optional<double>>& first_light) {
-    const core::Scan& scan = capture.scan;
+    const core::WallScan& scan = capture.scan.wall();
     if (!scan.sensing.grid) return std::nullopt;
     const auto [nx, ny] = *scan.sensing.grid;
     if (nx < kMinCheckedPoints || ny < kMinCheckedPoints) return std::nullopt;
@@ -266,7 +258,7 @@ std::vector<std::string> capture_warnings(const core::Capture& capture) {
     std::vector<std::string> warnings;
     if (auto warning = cut_light(capture)) warnings.push_back(*warning);
     if (auto warning = wrong_unit(capture)) warnings.push_back(*warning);
-    if (capture.scan.camera) return warnings;
+    if (!capture.scan.has_wall()) return warnings;
     const std::vector<double> ambient = ambient_of(capture);
     const auto early = early_light(capture, ambient);
     if (early && capture.time_axis.opl_start_m < -capture.time_axis.bin_width_m) {

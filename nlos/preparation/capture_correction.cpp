@@ -71,7 +71,7 @@ double extent_of(const PathGeometry& geometry) {
     return extent;
 }
 
-bool knows_devices(const core::Scan& scan) {
+bool knows_devices(const core::WallScan& scan) {
     return scan.opl_origin == core::OplOrigin::Device || !scan.laser_position.isZero() ||
            !scan.detector_position.isZero();
 }
@@ -99,7 +99,7 @@ void add_lengths(const core::Capture& capture,
 
 }  // namespace
 
-bool is_scale_free(const core::Scan& scan) {
+bool is_scale_free(const core::WallScan& scan) {
     if (scan.opl_origin == core::OplOrigin::Device || scan.pattern == core::ScanPattern::Single) {
         return false;
     }
@@ -119,7 +119,7 @@ PathGeometry corrected_geometry(const core::Capture& capture,
                                 const HistogramSample& sample,
                                 const CaptureCorrection& correction) {
     const core::TimeAxis& axis = capture.time_axis;
-    core::Scan scan = capture.scan;
+    core::WallScan scan = capture.scan.wall();
     const core::ScanExtent extent = core::scan_extent(scan);
     for (core::WallPoints* points : {&scan.sensing, &scan.illumination}) {
         points->positions = corrected_points(*points, extent, correction.wall_factor);
@@ -190,7 +190,7 @@ bool is_in_proportion(const core::Capture& capture,
 
 std::vector<CaptureCorrection> possible_corrections(const core::Capture& capture,
                                                     const HistogramSample& sample) {
-    const core::Scan& scan = capture.scan;
+    const core::WallScan& scan = capture.scan.wall();
     std::vector<CaptureCorrection> list;
     add_lengths(capture, sample, list);
     if (knows_devices(scan)) {

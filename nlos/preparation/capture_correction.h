@@ -38,7 +38,7 @@ bool is_mirror_image(const core::Capture& capture,
 
 /// Whether wrong lengths and a wrong wall are one and the same but for the size of everything: path
 /// lengths from and to the wall, and all points on a flat one stretched together.
-bool is_scale_free(const core::Scan& scan);
+bool is_scale_free(const core::WallScan& scan);
 
 /// The single slips that could have been made, but for those of time zero, that this capture could
 /// show: factors of lengths (units, one way and round trip), the wall's size, device legs, exchange

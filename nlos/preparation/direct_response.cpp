@@ -23,13 +23,13 @@ class AlignedSum {
  public:
     AlignedSum(const core::Capture& capture, const std::vector<double>& ambient)
         : bin_width_m_(capture.time_axis.bin_width_m) {
-        const auto [shortest, longest] = core::device_leg_range_m(capture.scan);
+        const auto [shortest, longest] = core::device_leg_range_m(capture.scan.wall());
         start_m_ = capture.time_axis.opl_start_m - longest;
         has_shifts_ = longest - shortest > 1e-3 * bin_width_m_;
         const auto num_bins = static_cast<std::size_t>(capture.time_axis.num_bins);
         sum.assign(num_bins + bins(longest - shortest), 0.0);
         for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
-            const std::size_t shift = bins(longest - capture.scan.device_legs_m(pair));
+            const std::size_t shift = bins(longest - capture.scan.wall().device_legs_m(pair));
             const auto histogram = capture.transient.histogram(pair);
             for (std::size_t i = 0; i < num_bins; ++i) {
                 sum[shift + i] += static_cast<double>(histogram[i]) - ambient[pair];
@@ -106,7 +106,7 @@ core::ResponseSettings response_of(const AlignedSum& aligned,
 }  // namespace
 
 std::optional<DirectResponse> measure_direct_return(const core::Capture& capture) {
-    if (capture.scan.pattern != core::ScanPattern::Confocal) return std::nullopt;
+    if (capture.scan.wall().pattern != core::ScanPattern::Confocal) return std::nullopt;
     const std::optional<SignalExtent> signal = find_signal(capture.transient, capture.observed);
     const std::vector<double> ambient =
         signal ? signal->ambient_per_bin : std::vector<double>(capture.scan.num_pairs(), 0.0);
@@ -122,7 +122,7 @@ std::optional<DirectResponse> measure_direct_return(const core::Capture& capture
     if (!bins) return std::nullopt;
     const double end_m = aligned.center_m(bins->end) - 0.5 * bin_width_m;
     return DirectResponse{response_of(aligned, *bins, bin_width_m),
-                          end_m + core::device_leg_range_m(capture.scan)[1]};
+                          end_m + core::device_leg_range_m(capture.scan.wall())[1]};
 }
 
 std::string describe(const DirectResponse& direct) {

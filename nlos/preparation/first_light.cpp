@@ -104,12 +104,12 @@ std::optional<double> first_light_m(const core::Capture& capture,
     const double before = bin > 0 ? excess(bin - 1) : 0.0;
     const double late = (threshold - before) / (excess(bin) - before);
     return capture.time_axis.bin_center_m(first_seen + static_cast<double>(bin) - 1.0 + late) -
-           capture.scan.device_legs_m(pair);
+           capture.scan.wall().device_legs_m(pair);
 }
 
 std::vector<std::optional<double>> first_light_m(const core::Capture& capture,
                                                  const std::vector<double>& ambient) {
-    const core::Scan& scan = capture.scan;
+    const core::WallScan& scan = capture.scan.wall();
     std::vector<std::optional<double>> first_light(
         std::min(scan.sensing.size(), scan.num_pairs()));  // a list may have fewer pairs
     core::parallel_for(first_light.size(), [&](std::size_t pair) {
@@ -120,8 +120,8 @@ std::vector<std::optional<double>> first_light_m(const core::Capture& capture,
 
 std::optional<BendOfFirstLight> bend_of_first_light(
     const core::Capture& capture, const std::vector<std::optional<double>>& first_light) {
-    if (capture.scan.pattern != core::ScanPattern::Confocal) return std::nullopt;
-    const WallFrame wall = derive_wall_frame(capture.scan);
+    if (capture.scan.wall().pattern != core::ScanPattern::Confocal) return std::nullopt;
+    const WallFrame wall = derive_wall_frame(capture.scan.wall());
     if (!wall.grid || std::min(wall.grid->size[0], wall.grid->size[1]) < kMinPoints) {
         return std::nullopt;
     }

@@ -216,7 +216,7 @@ core::Transient prepare_histograms(const core::Transient& transient, const Prepa
     return prepared;
 }
 
-void multiply_by_range(const core::Scan& scan,
+void multiply_by_range(const core::WallScan& scan,
                        const core::TimeAxis& axis,
                        double power,
                        core::Transient& transient) {

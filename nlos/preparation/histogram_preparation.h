@@ -97,7 +97,7 @@ core::ObservedBins prepared_observed(const PreparationPlan& plan);
 /// Multiplies every bin by range^power, range being half its path length without device legs; bins
 /// before the wall become 0. The power of the light's falloff makes equal scatterers equally bright
 /// wherever they are, without moving them.
-void multiply_by_range(const core::Scan& scan,
+void multiply_by_range(const core::WallScan& scan,
                        const core::TimeAxis& axis,
                        double power,
                        core::Transient& transient);

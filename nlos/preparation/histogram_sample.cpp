@@ -106,10 +106,9 @@ void scale_radiance(HistogramSample& sample) {
     for (float& value : sample.ambient) value *= scale;
 }
 
-double shortest_m(const core::Scan& scan, std::size_t pair) {
-    return scan.device_legs_m(pair) + (scan.illumination.positions[scan.illumination_index(pair)] -
-                                       scan.sensing.positions[scan.sensing_index(pair)])
-                                          .norm();
+double shortest_m(const core::WallScan& scan, std::size_t pair) {
+    return scan.device_legs_m(pair) +
+           (scan.illumination_point(pair) - scan.sensing_point(pair)).norm();
 }
 
 /// Light of a histogram without its peak, which reaches from as far before it as it fades behind.
@@ -144,7 +143,7 @@ std::size_t fading_end(const std::span<const float>& histogram, std::size_t peak
 
 }  // namespace
 
-std::vector<std::size_t> sampled_pairs(const core::Scan& scan) {
+std::vector<std::size_t> sampled_pairs(const core::WallScan& scan) {
     const std::vector<std::size_t> sensed = some_points(scan.sensing);
     if (scan.pattern != core::ScanPattern::Exhaustive) return sensed;
     const std::vector<std::size_t> lit = some_points(scan.illumination);
@@ -160,7 +159,7 @@ std::vector<std::size_t> sampled_pairs(const core::Scan& scan) {
 
 std::optional<DirectReturn> find_direct_return(const core::Capture& capture,
                                                const std::vector<double>& ambient) {
-    const std::vector<std::size_t> pairs = sampled_pairs(capture.scan);
+    const std::vector<std::size_t> pairs = sampled_pairs(capture.scan.wall());
     std::vector<double> late_m;
     std::vector<double> fading_m;
     DirectReturn found;
@@ -180,7 +179,7 @@ std::optional<DirectReturn> find_direct_return(const core::Capture& capture,
         found.end_bins.push_back(end);
         fading_m.push_back(capture.time_axis.bin_width_m * static_cast<double>(end - peak));
         late_m.push_back(capture.time_axis.bin_center_m(static_cast<double>(peak)) -
-                         shortest_m(capture.scan, pair));
+                         shortest_m(capture.scan.wall(), pair));
     }
     const auto count = static_cast<double>(pairs.size());
     if (static_cast<double>(standing_out) < kDirectShare * count) return std::nullopt;
@@ -200,7 +199,7 @@ std::optional<HistogramSample> sample_histograms(const core::Capture& capture,
                                                  const std::vector<double>& ambient,
                                                  const std::optional<DirectReturn>& direct) {
     HistogramSample sample;
-    sample.pairs = sampled_pairs(capture.scan);
+    sample.pairs = sampled_pairs(capture.scan.wall());
     if (sample.pairs.size() < kFewestPairs) return std::nullopt;
     const std::vector<std::size_t> first_bins =
         direct ? direct->end_bins : std::vector<std::size_t>(sample.pairs.size(), 0);

@@ -22,7 +22,7 @@ struct HistogramSample {
 };
 
 /// The pairs that a sample holds: at most 196, spread over the scanned points.
-std::vector<std::size_t> sampled_pairs(const core::Scan& scan);
+std::vector<std::size_t> sampled_pairs(const core::WallScan& scan);
 
 /// Light that came from the lit point of the wall to the sensing point with nothing in between.
 struct DirectReturn {

@@ -23,12 +23,11 @@ struct MidpointGrid {
     std::vector<std::vector<std::size_t>> pairs;  ///< per grid point, x before y
 };
 
-core::Vec3 midpoint(const core::Scan& scan, std::size_t pair) {
-    return 0.5 * (scan.illumination.positions[scan.illumination_index(pair)] +
-                  scan.sensing.positions[scan.sensing_index(pair)]);
+core::Vec3 midpoint(const core::WallScan& scan, std::size_t pair) {
+    return 0.5 * (scan.illumination_point(pair) + scan.sensing_point(pair));
 }
 
-std::optional<MidpointGrid> find_midpoint_grid(const core::Scan& scan, const WallFrame& wall) {
+std::optional<MidpointGrid> find_midpoint_grid(const core::WallScan& scan, const WallFrame& wall) {
     if (!wall.grid) return std::nullopt;
     const core::Transform wall_from_world = wall.world_from_wall.inverse(Eigen::Isometry);
     std::vector<Eigen::Vector2d> midpoints(scan.num_pairs());
@@ -86,7 +85,9 @@ core::WallPoints wall_points(const MidpointGrid& grid, const WallFrame& wall) {
 
 /// The confocal axis starts at 0 and ends where the last bin can land. An axis that starts far from
 /// the wall fills much with darkness: refused before it is made.
-core::TimeAxis confocal_axis(const core::Scan& scan, core::TimeAxis axis, std::size_t num_points) {
+core::TimeAxis confocal_axis(const core::WallScan& scan,
+                             core::TimeAxis axis,
+                             std::size_t num_points) {
     const double shortest = core::device_leg_range_m(scan)[0];
     const double end = std::max(axis.bin_width_m, axis.opl_end_m() - shortest);
     const double num_bins = std::ceil(end / axis.bin_width_m - 1e-6);
@@ -102,12 +103,10 @@ core::TimeAxis confocal_axis(const core::Scan& scan, core::TimeAxis axis, std::s
 }
 
 /// The bin edges of a pair as confocal path lengths.
-std::vector<double> moved_edges(const core::Scan& scan,
+std::vector<double> moved_edges(const core::WallScan& scan,
                                 const core::TimeAxis& axis,
                                 std::size_t pair) {
-    const double offset = (scan.illumination.positions[scan.illumination_index(pair)] -
-                           scan.sensing.positions[scan.sensing_index(pair)])
-                              .norm();
+    const double offset = (scan.illumination_point(pair) - scan.sensing_point(pair)).norm();
     std::vector<double> edges(static_cast<std::size_t>(axis.num_bins) + 1);
     for (std::size_t bin = 0; bin < edges.size(); ++bin) {
         const double opl = axis.bin_begin_m(static_cast<double>(bin)) - scan.device_legs_m(pair);
@@ -196,7 +195,7 @@ bool convert_to_confocal(PreparedCapture& prepared) {
         prepared.scan.pattern == core::ScanPattern::Single ? "single-laser" : "exhaustive",
         grid->size[0],
         grid->size[1]);
-    prepared.scan = core::Scan{};
+    prepared.scan = core::WallScan{};
     prepared.scan.sensing = wall_points(*grid, prepared.wall);
     prepared.scan.illumination = prepared.scan.sensing;
     prepared.time_axis = axis;

@@ -112,7 +112,7 @@ void take_histograms(const core::Capture& capture,
 void crop_measurement(const core::Capture& capture,
                       const CropSettings& crop,
                       PreparedCapture& prepared) {
-    const core::Scan& scan = capture.scan;
+    const core::WallScan& scan = capture.scan.wall();
     const core::Transform wall_from_world = prepared.wall.world_from_wall.inverse(Eigen::Isometry);
     const Selection sensing = select_points(scan.sensing, wall_from_world, crop);
     const bool is_exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
@@ -144,19 +144,19 @@ void crop_measurement(const core::Capture& capture,
 
 PreparedCapture crop_capture(const core::Capture& capture, const CropSettings& crop) {
     PreparedCapture prepared;
-    prepared.scan = capture.scan;
+    prepared.scan = capture.scan.wall();
     prepared.time_axis = capture.time_axis;
     prepared.unit = capture.unit;
     prepared.capture_transient = &capture.transient;
     prepared.observed = capture.observed;
-    prepared.wall = derive_wall_frame(capture.scan);
+    prepared.wall = derive_wall_frame(capture.scan.wall());
     const bool has_blind_ends =
         core::observed_hull(capture.observed, capture.time_axis.num_bins).size() <
         capture.time_axis.num_bins;
     if (crop.x_range_m || crop.y_range_m || crop.opl_range_m || has_blind_ends) {
         crop_measurement(capture, crop, prepared);
     }
-    core::Scan& scan = prepared.scan;
+    core::WallScan& scan = prepared.scan;
     if (scan.pattern == core::ScanPattern::Exhaustive && scan.sensing.size() == 1) {
         // Light takes the same way back: swap the roles; the histograms keep their order.
         std::swap(scan.illumination, scan.sensing);

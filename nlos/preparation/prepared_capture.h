@@ -11,7 +11,7 @@ namespace nlos {
 
 /// What a method reconstructs from: a capture, or what cropping and conversion made of it.
 struct PreparedCapture {
-    core::Scan scan;
+    core::WallScan scan;
     core::TimeAxis time_axis;
     core::TransientUnit unit = core::TransientUnit::Radiance;
     core::Transient own;  ///< histograms that differ from the capture's; else empty

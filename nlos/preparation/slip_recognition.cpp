@@ -59,7 +59,7 @@ double needed_gain(const CorrectionShare& share) {
 }
 
 double extent_m(const core::Capture& capture) {
-    const core::ScanExtent extent = core::scan_extent(capture.scan);
+    const core::ScanExtent extent = core::scan_extent(capture.scan.wall());
     return std::hypot(extent.size_m[0], extent.size_m[1]);
 }
 
@@ -67,7 +67,7 @@ double extent_m(const core::Capture& capture) {
 
 std::optional<SlipEvidence> slip_evidence(const core::Capture& capture,
                                           const std::vector<double>& ambient) {
-    if (capture.scan.camera || !(extent_m(capture) > 0.0)) return std::nullopt;
+    if (!capture.scan.has_wall() || !(extent_m(capture) > 0.0)) return std::nullopt;
     const std::optional<DirectReturn> direct = find_direct_return(capture, ambient);
     const auto sample = sample_histograms(capture, ambient, direct);
     if (!sample || !has_structure(*sample)) return std::nullopt;

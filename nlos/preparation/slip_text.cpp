@@ -34,7 +34,7 @@ constexpr FactorStory kFactorStories[] = {
     {1e12 / core::kSpeedOfLight, "as if metres had been taken for ps"}};
 
 std::string setting_of_wall(const core::Capture& capture, double factor) {
-    const core::ScanExtent extent = core::scan_extent(capture.scan);
+    const core::ScanExtent extent = core::scan_extent(capture.scan.wall());
     return fmt::format("capture.wall_size_m=[{:.6g},{:.6g}]",
                        factor * extent.size_m[0],
                        factor * extent.size_m[1]);
@@ -54,7 +54,7 @@ std::string text_of_lengths(const core::Capture& capture, const CaptureCorrectio
     if (!correction.keeps_start && std::abs(start_moves_m) > factor * axis.bin_width_m) {
         text += fmt::format(" capture.opl_shift_m={:.6g}", start_moves_m);
     }
-    if (!is_scale_free(capture.scan)) return text;
+    if (!is_scale_free(capture.scan.wall())) return text;
     return text + fmt::format("; or the wall looks {:.4g} times too {}{}: --set {}",
                               std::max(factor, 1.0 / factor),
                               factor < 1.0 ? "small" : "large",

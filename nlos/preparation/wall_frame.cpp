@@ -107,7 +107,7 @@ void find_grid(const core::WallPoints& points, const std::array<Vec3, 2>& steps,
 }
 
 /// Bounds of all wall points; half a cell is added where a grid says how large a cell is.
-void find_footprint(const core::Scan& scan, WallFrame& wall) {
+void find_footprint(const core::WallScan& scan, WallFrame& wall) {
     const core::Transform wall_from_world = wall.world_from_wall.inverse(Eigen::Isometry);
     Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300);
     Eigen::Vector2d high = -low;
@@ -127,7 +127,7 @@ void find_footprint(const core::Scan& scan, WallFrame& wall) {
 
 }  // namespace
 
-WallFrame derive_wall_frame(const core::Scan& scan) {
+WallFrame derive_wall_frame(const core::WallScan& scan) {
     const core::WallPoints& points = scan.scanned_points();
     const Vec3 center = mean_of(points.positions);
     Vec3 mean_normal = mean_of(points.normals);

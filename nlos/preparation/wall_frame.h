@@ -34,11 +34,11 @@ struct WallFrame {
     core::Transform world_from_wall = core::Transform::Identity();
     std::array<double, 2> min_m{};  ///< smallest x and y of all wall points, half a cell beyond
     std::array<double, 2> max_m{};  ///< largest x and y of all wall points, half a cell beyond
-    std::optional<WallGrid> grid;   ///< of `Scan::scanned_points`
+    std::optional<WallGrid> grid;   ///< of `WallScan::scanned_points`
     std::string why_no_grid;        ///< in words, when `grid` is empty
 };
 
-/// Derives the wall's frame from `Scan::scanned_points`.
+/// Derives the wall's frame from `WallScan::scanned_points`.
 ///
 /// A grid whose axes and normal are left-handed keeps x along the first axis and turns y around, or
 /// the other way round when that makes y point up (world y); rows and columns are then
@@ -47,6 +47,6 @@ struct WallFrame {
 /// returns   frame, footprint, and the grid unless the points are bent, tilted or uneven by more
 ///           than 2 % of their pitch
 /// throws    nothing
-WallFrame derive_wall_frame(const core::Scan& scan);
+WallFrame derive_wall_frame(const core::WallScan& scan);
 
 }  // namespace nlos

@@ -25,7 +25,7 @@ struct Powers {
 
 }  // namespace
 
-double wiener_snr(const core::Scan& scan,
+double wiener_snr(const core::WallScan& scan,
                   const core::TimeAxis& axis,
                   const core::Transient& counts,
                   const PreparationPlan& plan,

@@ -26,7 +26,7 @@ inline constexpr double kNoiselessSnr = 1.0;
 ///                      not observed count on neither side
 /// returns              positive; at least 0.001, where the counts hold no signal
 /// source               [Wiener1949]
-double wiener_snr(const core::Scan& scan,
+double wiener_snr(const core::WallScan& scan,
                   const core::TimeAxis& axis,
                   const core::Transient& counts,
                   const PreparationPlan& plan,

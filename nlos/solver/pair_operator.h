@@ -59,7 +59,7 @@ class PairOperator {
     /// What does.
     void place(const SpotPoint& point, std::size_t count, Legs& legs) const;
 
-    const core::Scan& scan_;
+    const core::WallScan& scan_;
     core::TimeAxis axis_;
     std::size_t num_bins_;
     core::ResponseFilter response_;

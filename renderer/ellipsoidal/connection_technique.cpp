@@ -73,7 +73,7 @@ ConnectionTechnique::ConnectionTechnique(const Scene& scene,
                                          const core::Scan& scan)
     : scene_(&scene),
       is_excluded_(excluded.facets),
-      hierarchy_(scene, kept_facets(excluded), visible_sides(scene.objects(), scan)) {}
+      hierarchy_(scene, kept_facets(excluded), visible_sides(scene.objects(), scan.path_ends())) {}
 
 std::optional<LobeOnFacet> ConnectionTechnique::lobe_of(const PathVertex& vertex,
                                                         const core::Vec3& light,

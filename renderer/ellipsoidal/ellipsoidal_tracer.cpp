@@ -93,7 +93,8 @@ EllipsoidalTracer::EllipsoidalTracer(const Scene& scene,
       lengths_(lengths_of_gate(axis, settings.gate)),
       excluded_(ExcludedFacets::of(scene, axis, settings)),
       technique_(scene, excluded_, scan) {
-    if (scan.camera) pixel_places_.emplace(SensorPairs(scene, scan), *scan.camera);
+    const SensorPairs sensor_pairs(scene, scan);
+    if (sensor_pairs.is_image()) pixel_places_.emplace(sensor_pairs, sensor_pairs.camera());
 }
 
 std::unique_ptr<PairWalk> EllipsoidalTracer::start(const PathEndpoints& ends,

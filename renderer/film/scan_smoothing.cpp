@@ -35,7 +35,7 @@ struct GridSide {
     std::size_t stride = 1;
 };
 
-std::vector<GridSide> grid_sides(const core::Scan& scan) {
+std::vector<GridSide> grid_sides(const core::WallScan& scan) {
     std::vector<GridSide> sides;
     const auto add = [&](const core::WallPoints& points, std::size_t stride) {
         if (!points.grid) return;
@@ -53,7 +53,7 @@ int width_limit(std::size_t count) {
 }
 
 // The widest of both that a scan allows.
-SmoothingWidths widest(const core::Scan& scan, std::size_t num_bins) {
+SmoothingWidths widest(const core::WallScan& scan, std::size_t num_bins) {
     SmoothingWidths widths{1, width_limit(num_bins)};
     const std::vector<GridSide> sides = grid_sides(scan);
     if (sides.empty()) return widths;
@@ -152,7 +152,7 @@ double squared_bias(const core::Transient& mean,
 }  // namespace
 
 core::Transient smooth_scan(const core::Transient& transient,
-                            const core::Scan& scan,
+                            const core::WallScan& scan,
                             const SmoothingWidths& widths) {
     core::Transient result = transient;
     if (widths.points > 1) {
@@ -165,7 +165,7 @@ core::Transient smooth_scan(const core::Transient& transient,
 
 SmoothedMean smooth_mean(const core::Transient& a,
                          const core::Transient& b,
-                         const core::Scan& scan,
+                         const core::WallScan& scan,
                          const core::Transient* precomputed) {
     core::Transient mean(a.num_pairs(), static_cast<int>(a.num_bins()));
     core::Transient difference = mean;

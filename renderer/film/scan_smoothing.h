@@ -22,7 +22,7 @@ struct SmoothingWidths {
 ///
 /// scan   of the pairs of `transient`; no image
 core::Transient smooth_scan(const core::Transient& transient,
-                            const core::Scan& scan,
+                            const core::WallScan& scan,
                             const SmoothingWidths& widths);
 
 /// The mean of two estimates, smoothed, and what is known of it.
@@ -45,7 +45,7 @@ struct SmoothedMean {
 /// source        risk from independent halves of the samples, as in [Rousselle2012]
 SmoothedMean smooth_mean(const core::Transient& a,
                          const core::Transient& b,
-                         const core::Scan& scan,
+                         const core::WallScan& scan,
                          const core::Transient* precomputed);
 
 }  // namespace renderer

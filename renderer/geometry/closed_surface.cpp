@@ -48,18 +48,11 @@ double signed_volume(const TriangleMesh& mesh) {
     return volume / 6.0;
 }
 
-int visible_side(const Object& object, const core::Scan& scan) {
+int visible_side(const Object& object, std::span<const Vec3> path_ends) {
     Eigen::AlignedBox3d box;
     for (const Vec3& vertex : object.mesh.vertices) box.extend(vertex);
     const auto inside = [&](const Vec3& point) { return box.contains(point); };
-    if (scan.camera && (inside(scan.camera->position_m) || inside(scan.camera->light_position()))) {
-        return 0;
-    }
-    if (std::any_of(scan.sensing.positions.begin(), scan.sensing.positions.end(), inside) ||
-        std::any_of(
-            scan.illumination.positions.begin(), scan.illumination.positions.end(), inside)) {
-        return 0;
-    }
+    if (std::ranges::any_of(path_ends, inside)) return 0;
     if (!is_closed(object.mesh)) return 0;
     const double volume = signed_volume(object.mesh);
     if (volume == 0.0) return 0;
@@ -68,9 +61,9 @@ int visible_side(const Object& object, const core::Scan& scan) {
 
 }  // namespace
 
-std::vector<int> visible_sides(std::span<const Object> objects, const core::Scan& scan) {
+std::vector<int> visible_sides(std::span<const Object> objects, std::span<const Vec3> path_ends) {
     std::vector<int> sides;
-    for (const Object& object : objects) sides.push_back(visible_side(object, scan));
+    for (const Object& object : objects) sides.push_back(visible_side(object, path_ends));
     return sides;
 }
 

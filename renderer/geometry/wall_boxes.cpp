@@ -50,7 +50,7 @@ PerBox squared_distances(const Eigen::ArrayX3d& lower,
 
 }  // namespace
 
-WallBoxes::WallBoxes(const core::Scan& scan, const Vec3& origin)
+WallBoxes::WallBoxes(const core::WallScan& scan, const Vec3& origin)
     : confocal_(scan.pattern == core::ScanPattern::Confocal),
       sensor_(make_boxes(scan.sensing, origin)) {
     if (!confocal_) light_ = make_boxes(scan.illumination, origin);

@@ -25,7 +25,7 @@ struct LegBounds {
 class WallBoxes {
  public:
     /// origin   what positions are relative to [m, world]
-    WallBoxes(const core::Scan& scan, const core::Vec3& origin);
+    WallBoxes(const core::WallScan& scan, const core::Vec3& origin);
 
     LegBounds legs(const core::Vec3& center, double radius) const;
     /// The exact least distances from points to a sphere, which legs() only bounds.

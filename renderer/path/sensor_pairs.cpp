@@ -43,18 +43,21 @@ std::optional<SurfacePoint> surface_point(const Scene& scene, const Vec3& point)
 }  // namespace
 
 int first_order(const core::Scan& scan) {
-    if (!scan.camera) return 3;
-    return scan.camera->light_spot_m ? 2 : 1;
+    return scan.visit(
+        [](const core::WallScan&) { return 3; },
+        [](const core::ImageScan& image) { return image.camera.light_spot_m ? 2 : 1; });
 }
 
 SensorPairs::SensorPairs(const Scene& scene, const core::Scan& scan)
     : scene_(&scene), scan_(&scan) {
-    if (!scan.camera) return;
-    world_from_image_ = scan.camera->world_from_image();
-    if (scan.camera->light_spot_m) {
-        light_ = spot_light(*scan.camera->light_spot_m);
+    scan.visit([&](const core::WallScan& wall) { wall_ = &wall; },
+               [&](const core::ImageScan& image) { camera_ = &image.camera; });
+    if (!is_image()) return;
+    world_from_image_ = camera_->world_from_image();
+    if (camera_->light_spot_m) {
+        light_ = spot_light(*camera_->light_spot_m);
     } else {
-        light_.position = scan.camera->light_position();
+        light_.position = camera_->light_position();
         light_.isotropic = true;
         light_.strength = 1.0 / (4.0 * core::kPi);
     }
@@ -73,7 +76,7 @@ PathEndpoint SensorPairs::spot_light(const Vec3& spot) const {
     PathEndpoint light;
     light.position = point->position;
     light.normal = scene_->facet(point->facet).normal;
-    if (light.normal.dot(scan_->camera->position_m - light.position) < 0.0) light.normal *= -1.0;
+    if (light.normal.dot(camera_->position_m - light.position) < 0.0) light.normal *= -1.0;
     light.strength = albedo_of(scene_->bsdf_at(*point)) / core::kPi;
     light.velocity_m_per_s = scene_->velocity_m_per_s(point->facet);
     return light;
@@ -82,16 +85,16 @@ PathEndpoint SensorPairs::spot_light(const Vec3& spot) const {
 PathEndpoints SensorPairs::ends(std::size_t pair) const {
     PathEndpoints ends;
     if (is_image()) {
-        ends.sensor.position = scan_->camera->position_m;
+        ends.sensor.position = camera_->position_m;
         ends.sensor.isotropic = true;
         ends.sensor.strength = 1.0;
         ends.light = light_;
         return ends;
     }
     const double albedo = scene_->wall_albedo();
-    ends.sensor = wall_end(scan_->sensing, scan_->sensing_index(pair), albedo);
-    ends.light = wall_end(scan_->illumination, scan_->illumination_index(pair), albedo);
-    ends.device_legs_m = scan_->device_legs_m(pair);
+    ends.sensor = wall_end(wall_->sensing, wall_->sensing_index(pair), albedo);
+    ends.light = wall_end(wall_->illumination, wall_->illumination_index(pair), albedo);
+    ends.device_legs_m = wall_->device_legs_m(pair);
     ends.coincide =
         ends.sensor.position == ends.light.position && ends.sensor.normal == ends.light.normal;
     return ends;
@@ -99,7 +102,7 @@ PathEndpoints SensorPairs::ends(std::size_t pair) const {
 
 std::optional<PathVertex> SensorPairs::first_vertex(std::size_t pixel, const core::Vec2& u) const {
     const Vec3 direction = direction_through(pixel, u);
-    const auto hit = scene_->first_hit(scan_->camera->position_m, direction, direction);
+    const auto hit = scene_->first_hit(camera_->position_m, direction, direction);
     if (!hit) return std::nullopt;
     return seen_vertex(*hit, direction);
 }
@@ -115,7 +118,7 @@ void SensorPairs::find_first_vertices(std::size_t pixel,
         packet.y[i] = direction.y();
         packet.z[i] = direction.z();
     }
-    const Vec3& position = scan_->camera->position_m;
+    const Vec3& position = camera_->position_m;
     const Vec3 view = direction_through(pixel, {0.5, 0.5});
     scene_->rays().first_hits(position, view, packet);
     for (std::size_t i = 0; i < u.size(); ++i) {
@@ -127,7 +130,7 @@ void SensorPairs::find_first_vertices(std::size_t pixel,
 }
 
 Vec3 SensorPairs::direction_through(std::size_t pixel, const core::Vec2& u) const {
-    const core::PinholeCamera& camera = *scan_->camera;
+    const core::PinholeCamera& camera = *camera_;
     const double x = static_cast<double>(pixel / camera.height()) + u.x();
     const double y = static_cast<double>(pixel % camera.height()) + u.y();
     return (world_from_image_ * Vec3(x, y, 1.0)).normalized();
@@ -136,9 +139,8 @@ Vec3 SensorPairs::direction_through(std::size_t pixel, const core::Vec2& u) cons
 PathVertex SensorPairs::seen_vertex(const SurfacePoint& point, const Vec3& direction) const {
     PathVertex vertex = vertex_at(*scene_, point, -direction);
     vertex.throughput = 1.0;
-    vertex.extent.add_segment(point.position - scan_->camera->position_m,
-                              Vec3::Zero(),
-                              scene_->velocity_m_per_s(point.facet));
+    vertex.extent.add_segment(
+        point.position - camera_->position_m, Vec3::Zero(), scene_->velocity_m_per_s(point.facet));
     vertex.order = first_order();
     return vertex;
 }

@@ -25,9 +25,11 @@ class SensorPairs {
     /// Both must outlive this.
     /// throws   core::Error when the spot of a camera's light lies on no surface
     SensorPairs(const Scene& scene, const core::Scan& scan);
+    SensorPairs(const Scene& scene, core::Scan&& scan) = delete;
 
     std::size_t num_pairs() const { return scan_->num_pairs(); }
-    bool is_image() const { return scan_->camera.has_value(); }
+    bool is_image() const { return camera_ != nullptr; }
+    const core::PinholeCamera& camera() const { return *camera_; }  ///< of an image
 
     int first_order() const { return renderer::first_order(*scan_); }
 
@@ -54,7 +56,9 @@ class SensorPairs {
 
     const Scene* scene_;
     const core::Scan* scan_;
-    PathEndpoint light_;  ///< of images
+    const core::WallScan* wall_ = nullptr;         ///< what the scan is of: either this
+    const core::PinholeCamera* camera_ = nullptr;  ///< or this
+    PathEndpoint light_;                           ///< of images
     core::Mat3 world_from_image_ = core::Mat3::Identity();
 };
 

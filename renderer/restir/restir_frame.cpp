@@ -197,7 +197,7 @@ RestirScene::RestirScene(std::shared_ptr<const Scene> scene_of_frames,
       walk(*scene, settings.laser_spot_m2),
       candidates(*scene, scan, sensor_pairs, walk, axes.time, settings),
       shift(make_shift(*scene, settings.restir, axes)) {
-    if (sensor_pairs.is_image()) pixel_places.emplace(sensor_pairs, *scan.camera);
+    if (sensor_pairs.is_image()) pixel_places.emplace(sensor_pairs, sensor_pairs.camera());
 }
 
 PathDomain pixel_domain(const SensorPairs& sensor_pairs,

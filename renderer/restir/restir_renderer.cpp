@@ -64,18 +64,21 @@ PathCandidates::Effort effort_of(const RestirSettings& settings, double share) {
 
 }  // namespace
 
-RestirNeighbours::RestirNeighbours(const core::Scan& scan) : scan_(&scan) {
-    if (scan.camera) return;
-    near_sensing_count_ = std::min(kNearPoints, scan.sensing.size() - 1);
-    near_sensing_ = near_points(scan.sensing.positions, near_sensing_count_);
-    if (scan.pattern != core::ScanPattern::Exhaustive) return;
-    near_illumination_count_ = std::min(kNearPoints, scan.illumination.size() - 1);
-    near_illumination_ = near_points(scan.illumination.positions, near_illumination_count_);
+RestirNeighbours::RestirNeighbours(const core::Scan& scan) : scan_(scan) {
+    const auto* wall = scan.as<core::WallScan>();
+    if (wall == nullptr) return;
+    near_sensing_count_ = std::min(kNearPoints, wall->sensing.size() - 1);
+    near_sensing_ = near_points(wall->sensing.positions, near_sensing_count_);
+    if (!wall->is_exhaustive()) return;
+    near_illumination_count_ = std::min(kNearPoints, wall->illumination.size() - 1);
+    near_illumination_ = near_points(wall->illumination.positions, near_illumination_count_);
 }
 
-void RestirNeighbours::list_pixels(std::size_t pixel, std::vector<std::size_t>& near) const {
-    const auto width = static_cast<std::ptrdiff_t>(scan_->camera->width());
-    const auto height = static_cast<std::ptrdiff_t>(scan_->camera->height());
+void RestirNeighbours::list(const core::ImageScan& image,
+                            std::size_t pixel,
+                            std::vector<std::size_t>& near) const {
+    const auto width = static_cast<std::ptrdiff_t>(image.camera.width());
+    const auto height = static_cast<std::ptrdiff_t>(image.camera.height());
     const std::ptrdiff_t x = static_cast<std::ptrdiff_t>(pixel) / height;
     const std::ptrdiff_t y = static_cast<std::ptrdiff_t>(pixel) % height;
     for (std::ptrdiff_t i = x - kPixelRadius; i <= x + kPixelRadius; ++i) {
@@ -86,25 +89,26 @@ void RestirNeighbours::list_pixels(std::size_t pixel, std::vector<std::size_t>& 
     }
 }
 
+void RestirNeighbours::list(const core::WallScan& scan,
+                            std::size_t pair,
+                            std::vector<std::size_t>& near) const {
+    const std::size_t sensing = scan.sensing.size();
+    const std::size_t sensor = pair % sensing;
+    for (std::size_t i = 0; i < near_sensing_count_; ++i) {
+        near.push_back(pair - sensor + near_sensing_[sensor * near_sensing_count_ + i]);
+    }
+    for (std::size_t i = 0; i < near_illumination_count_; ++i) {
+        const std::size_t light = pair / sensing;
+        near.push_back(near_illumination_[light * near_illumination_count_ + i] * sensing + sensor);
+    }
+}
+
 void RestirNeighbours::pick(std::size_t pair,
                             int count,
                             core::Rng& rng,
                             std::vector<std::size_t>& picked) const {
     picked.clear();
-    if (scan_->camera) {
-        list_pixels(pair, picked);
-    } else {
-        const std::size_t sensing = scan_->sensing.size();
-        const std::size_t sensor = pair % sensing;
-        for (std::size_t i = 0; i < near_sensing_count_; ++i) {
-            picked.push_back(pair - sensor + near_sensing_[sensor * near_sensing_count_ + i]);
-        }
-        for (std::size_t i = 0; i < near_illumination_count_; ++i) {
-            const std::size_t light = pair / sensing;
-            picked.push_back(near_illumination_[light * near_illumination_count_ + i] * sensing +
-                             sensor);
-        }
-    }
+    scan_.visit([&](const auto& kind) { list(kind, pair, picked); });
     const std::size_t wanted = std::min(picked.size(), static_cast<std::size_t>(count));
     for (std::size_t i = 0; i < wanted; ++i) {
         const auto rest = static_cast<double>(picked.size() - i);
@@ -204,13 +208,13 @@ struct RestirRenderer::Worker {
 };
 
 RestirRenderer::RestirRenderer(const core::Scan& scan, const RenderSettings& settings)
-    : scan_(&scan),
+    : scan_(scan),
       settings_(settings),
-      max_vertices_(std::max(0, settings.max_bounces - (scan.camera ? 1 : 2))),
+      max_vertices_(std::max(0, settings.max_bounces - (scan.has_wall() ? 2 : 1))),
       neighbours_(scan) {}
 
 double RestirRenderer::bytes_needed(const core::HistogramAxes& axes) const {
-    const double reservoirs = static_cast<double>(scan_->num_pairs()) *
+    const double reservoirs = static_cast<double>(scan_.num_pairs()) *
                               static_cast<double>(ReservoirBins(axes, settings_.gate).count());
     // The frame's, those of a round of reuse, and the previous frame's.
     return 3.0 * reservoirs * PackedReservoirs::bytes_per_reservoir(max_vertices_);
@@ -222,7 +226,7 @@ void RestirRenderer::for_each_pair(const FrameInput& input,
                                    const std::function<void(Worker&)>& body) {
     std::mutex mutex;
     core::parallel_blocks(
-        scan_->num_pairs(), kPairsPerTask, [&](std::size_t begin, std::size_t end) {
+        scan_.num_pairs(), kPairsPerTask, [&](std::size_t begin, std::size_t end) {
             Worker worker{settings_.restir, frame, {}};
             worker.builders.resize(frame.bins.count());
             for (std::size_t pair = begin; pair < end; ++pair) {
@@ -242,8 +246,8 @@ RestirFrame RestirRenderer::render(const FrameInput& input) {
     RestirFrame frame;
     frame.scene = input.scene;
     frame.bins = ReservoirBins(input.axes, settings_.gate);
-    frame.domains.resize(scan_->num_pairs());
-    frame.reservoirs = PackedReservoirs(scan_->num_pairs() * frame.bins.count(), max_vertices_);
+    frame.domains.resize(scan_.num_pairs());
+    frame.reservoirs = PackedReservoirs(scan_.num_pairs() * frame.bins.count(), max_vertices_);
     find_domains(input, frame);
     counts_.num_rays += input.scene->candidates.prepare(settings_.seed, input.number);
     generate_candidates(input, frame);

@@ -11,16 +11,19 @@ namespace renderer {
 /// that scans need not be grids.
 class RestirNeighbours {
  public:
-    /// scan   must outlive this
+    /// scan   of which the pairs are
     explicit RestirNeighbours(const core::Scan& scan);
 
     /// Picks different pairs near a pair at random, fewer where there are not as many.
     void pick(std::size_t pair, int count, core::Rng& rng, std::vector<std::size_t>& picked) const;
 
  private:
-    void list_pixels(std::size_t pixel, std::vector<std::size_t>& near) const;
+    void list(const core::WallScan& scan, std::size_t pair, std::vector<std::size_t>& near) const;
+    void list(const core::ImageScan& image,
+              std::size_t pixel,
+              std::vector<std::size_t>& near) const;
 
-    const core::Scan* scan_;
+    core::Scan scan_;
     std::size_t near_sensing_count_ = 0;  ///< per point
     std::size_t near_illumination_count_ = 0;
     std::vector<std::size_t> near_sensing_;       ///< (points, count)
@@ -32,7 +35,7 @@ class RestirNeighbours {
 /// neighbours, shifted to the path length of its own gate.
 class RestirRenderer {
  public:
-    /// scan   must outlive the renderer
+    /// scan   of every frame
     RestirRenderer(const core::Scan& scan, const RenderSettings& settings);
 
     /// Memory needed to render frames [bytes].
@@ -61,7 +64,7 @@ class RestirRenderer {
                        int stage,
                        const std::function<void(Worker&)>& body);
 
-    const core::Scan* scan_;
+    core::Scan scan_;
     RenderSettings settings_;
     int max_vertices_;
     RestirNeighbours neighbours_;

@@ -27,7 +27,7 @@ std::vector<bool> found_in(const core::WallPoints& points, const core::WallPoint
 
 }  // namespace
 
-CoincidingPoints::CoincidingPoints(const core::Scan& scan) {
+CoincidingPoints::CoincidingPoints(const core::WallScan& scan) {
     if (scan.pattern == core::ScanPattern::Confocal) {
         illumination.assign(scan.illumination.size(), true);
         sensing.assign(scan.sensing.size(), true);

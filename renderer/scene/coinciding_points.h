@@ -15,7 +15,7 @@ struct CoincidingPoints {
     std::vector<bool> sensing;
 
     /// scan   of wall points
-    explicit CoincidingPoints(const core::Scan& scan);
+    explicit CoincidingPoints(const core::WallScan& scan);
 
     bool any() const { return std::ranges::find(sensing, true) != sensing.end(); }
 };

@@ -35,14 +35,14 @@ const Object* relay_wall_mesh(const SceneGeometry& geometry) {
 }
 
 SceneGeometry with_wall(SceneGeometry geometry, const core::Scan& scan, const RelayWall& wall) {
-    if (scan.camera) {
+    if (!scan.has_wall()) {
         // What relays light in a scan is a surface like any other to a camera.
         for (Object& object : geometry.objects) {
             if (object.role == Role::RelayWall) object.role = Role::Hidden;
         }
         return geometry;
     }
-    if (relay_wall_mesh(geometry) == nullptr && rectangle_carries_scan(wall, scan)) {
+    if (relay_wall_mesh(geometry) == nullptr && rectangle_carries_scan(wall, scan.wall())) {
         geometry.objects.push_back(rectangle_object(wall));
     }
     return geometry;
@@ -73,14 +73,6 @@ std::vector<std::array<Vec3, 3>> corners_of(std::span<const Facet> facets) {
     std::vector<std::array<Vec3, 3>> corners;
     for (const Facet& facet : facets) corners.push_back(facet.corners());
     return corners;
-}
-
-std::vector<Vec3> scan_points(const core::Scan& scan) {
-    if (scan.camera) return {scan.camera->position_m, scan.camera->light_position()};
-    std::vector<Vec3> points = scan.sensing.positions;
-    points.insert(
-        points.end(), scan.illumination.positions.begin(), scan.illumination.positions.end());
-    return points;
 }
 
 Bsdf make_bsdf(const Material& material) {
@@ -139,7 +131,7 @@ Scene::Scene(SceneGeometry geometry, const core::Scan& scan, const RelayWall& wa
     : geometry_(with_wall(std::move(geometry), scan, wall)),
       facets_(make_facets(geometry_)),
       wall_albedo_(wall.albedo),
-      rays_(corners_of(facets_), scan_points(scan)) {
+      rays_(corners_of(facets_), scan.path_ends()) {
     for (const Object& object : geometry_.objects) bsdfs_.push_back(make_bsdf(object.material));
     if (const Object* mesh = relay_wall_mesh(geometry_)) {
         has_relay_wall_ = true;
@@ -182,18 +174,20 @@ Scene make_scene(SceneGeometry geometry,
         Material& material = object.material;
         if (material.model == SurfaceModel::Lambertian) material.model = SurfaceModel::Dielectric;
     }
+    const auto* wall = scan.as<core::WallScan>();
     const auto in_front = [&](const Object& object) {
         if (object.role == Role::RelayWall) return false;
-        for (std::size_t i = 0; i < scan.sensing.size(); ++i) {
+        for (std::size_t i = 0; i < wall->sensing.size(); ++i) {
             for (const Vec3& vertex : object.mesh.vertices) {
-                if (scan.sensing.normals[i].dot(vertex - scan.sensing.positions[i]) > 0.0) {
+                if (wall->sensing.normals[i].dot(vertex - wall->sensing.positions[i]) > 0.0) {
                     return true;
                 }
             }
         }
         return false;
     };
-    if (!scan.camera && std::none_of(geometry.objects.begin(), geometry.objects.end(), in_front)) {
+    if (wall != nullptr &&
+        std::none_of(geometry.objects.begin(), geometry.objects.end(), in_front)) {
         throw core::Error(
             geometry_name(description),
             "found no hidden surface in front of the relay wall",
@@ -203,19 +197,19 @@ Scene make_scene(SceneGeometry geometry,
                      : ""));
     }
     const bool has_wall_mesh = relay_wall_mesh(geometry) != nullptr;
-    if (has_wall_mesh && scan.sensor) {
+    if (has_wall_mesh && scan.as<core::SensorScan>() != nullptr) {
         throw core::Error(geometry_name(description),
                           "found a mesh with the role relay_wall and a scan of pattern sensor",
                           "must have none: a sensor looks at the rectangle relay_wall");
     }
     Scene scene(std::move(geometry), scan, description.relay_wall);
-    if (has_wall_mesh && !scan.camera) {
+    if (has_wall_mesh && wall != nullptr) {
         const ScanSettings& asked = description.scan;
         if (asked.sensing_points_m.empty()) {
-            require_on_wall_mesh(scene, scan.sensing, "sensing_points");
+            require_on_wall_mesh(scene, wall->sensing, "sensing_points");
         }
         if (asked.pattern == core::ScanPattern::Exhaustive && asked.illumination_points_m.empty()) {
-            require_on_wall_mesh(scene, scan.illumination, "illumination_points");
+            require_on_wall_mesh(scene, wall->illumination, "illumination_points");
         }
     }
     return scene;

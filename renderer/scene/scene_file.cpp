@@ -163,16 +163,6 @@ core::WallPoints illumination_points(const SceneDescription& scene,
     return spot;
 }
 
-core::Scan image_of(const core::PinholeCamera& camera) {
-    core::Scan scan;
-    scan.pattern = core::ScanPattern::Single;
-    scan.opl_origin = core::OplOrigin::Device;
-    scan.laser_position = camera.light_position();
-    scan.detector_position = camera.position_m;
-    scan.camera = camera;
-    return scan;
-}
-
 // Takes pose and angle of view from the glTF camera that is named, if any is.
 void look_up_camera(const std::string& where, SceneDescription& scene) {
     if (!scene.camera || scene.camera->name.empty()) return;
@@ -289,9 +279,9 @@ void validate(const SceneDescription& scene, const std::string& where) {
 }
 
 core::Scan make_scan(const SceneDescription& scene) {
-    if (scene.camera) return image_of(*scene.camera);
+    if (scene.camera) return core::ImageScan{*scene.camera};
     if (scene.scan.pattern.of_sensor) return core::scan_of_zones(make_sensor_setup(scene));
-    core::Scan scan;
+    core::WallScan scan;
     scan.pattern = scene.scan.pattern;
     scan.sensing = scene.scan.sensing_points_m.empty()
                        ? wall_grid(scene.relay_wall, scene.scan.sensing_points)
@@ -303,13 +293,13 @@ core::Scan make_scan(const SceneDescription& scene) {
     return scan;
 }
 
-void describe_scan(const core::Scan& scan, ScanSettings& settings) {
+void describe_scan(const core::WallScan& scan, ScanSettings& settings) {
     settings.pattern = scan.pattern;
     settings.sensing_points_m = scan.sensing.positions;
     settings.sensing_normals = scan.sensing.normals;
     settings.illumination_points_m.clear();
     settings.illumination_normals.clear();
-    if (scan.pattern != core::ScanPattern::Confocal) {
+    if (!scan.is_confocal()) {
         settings.illumination_points_m = scan.illumination.positions;
         settings.illumination_normals = scan.illumination.normals;
     }
@@ -327,7 +317,7 @@ void refer_to_gltf(const std::string& file_name, SceneDescription& scene) {
     scene.objects.clear();
 }
 
-bool rectangle_carries_scan(const RelayWall& wall, const core::Scan& scan) {
+bool rectangle_carries_scan(const RelayWall& wall, const core::WallScan& scan) {
     const core::Transform wall_from_world = wall.world_from_wall().inverse();
     const double tolerance = 1e-6 * (wall.size_m[0] + wall.size_m[1]);
     const auto lies_on_it = [&](const Vec3& point) {
@@ -335,9 +325,7 @@ bool rectangle_carries_scan(const RelayWall& wall, const core::Scan& scan) {
         return std::abs(p.z()) < tolerance && std::abs(p.x()) < 0.5 * wall.size_m[0] + tolerance &&
                std::abs(p.y()) < 0.5 * wall.size_m[1] + tolerance;
     };
-    return std::all_of(scan.sensing.positions.begin(), scan.sensing.positions.end(), lies_on_it) &&
-           std::all_of(
-               scan.illumination.positions.begin(), scan.illumination.positions.end(), lies_on_it);
+    return std::ranges::all_of(scan.path_ends(), lies_on_it);
 }
 
 }  // namespace renderer

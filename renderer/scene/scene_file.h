@@ -217,13 +217,13 @@ core::Scan make_scan(const SceneDescription& scene);
 core::SensorSetup make_sensor_setup(const SceneDescription& scene);
 
 /// The inverse for a scan of wall points, which are stated one by one.
-void describe_scan(const core::Scan& scan, ScanSettings& settings);
+void describe_scan(const core::WallScan& scan, ScanSettings& settings);
 
 /// Makes a description refer to a glTF file that holds its objects as they are.
 void refer_to_gltf(const std::string& file_name, SceneDescription& scene);
 
 /// True when the scan's points all lie on the description's rectangle, which is then a surface of
 /// the scene; explicit points may lie elsewhere, on a curved wall for instance.
-bool rectangle_carries_scan(const RelayWall& wall, const core::Scan& scan);
+bool rectangle_carries_scan(const RelayWall& wall, const core::WallScan& scan);
 
 }  // namespace renderer

@@ -75,7 +75,7 @@ struct PackingRules {
 /// elements   freed, like `clusters`, as soon as they are merged
 /// clusters   of elements that may be merged, see cluster_elements()
 ElementSet pack_elements(const Scene& scene,
-                         const core::Scan& scan,
+                         const core::WallScan& scan,
                          const PackingRules& rules,
                          std::vector<SurfaceElement>&& elements,
                          std::vector<std::uint32_t>&& clusters);

@@ -62,7 +62,7 @@ void find_simd_group_spheres(ElementBlock& block) {
 
 class ElementPacker {
  public:
-    ElementPacker(const Scene& scene, const core::Scan& scan, const PackingRules& rules)
+    ElementPacker(const Scene& scene, const core::WallScan& scan, const PackingRules& rules)
         : scene_(scene), rules_(rules) {
         set_.origin = scene.rays().origin();
         Vec3 sum = Vec3::Zero();
@@ -271,7 +271,7 @@ ElementSet ElementPacker::pack(std::vector<SurfaceElement> elements,
 }  // namespace
 
 ElementSet pack_elements(const Scene& scene,
-                         const core::Scan& scan,
+                         const core::WallScan& scan,
                          const PackingRules& rules,
                          std::vector<SurfaceElement>&& elements,
                          std::vector<std::uint32_t>&& clusters) {

@@ -90,7 +90,7 @@ core::WallPoints subset(const core::WallPoints& points, std::size_t count) {
 }
 
 // Adds a pair whose ends coincide, if the scan has one and the pilot run has none.
-void add_confocal_pair(const core::Scan& scan, core::Scan& pilot) {
+void add_confocal_pair(const core::WallScan& scan, core::WallScan& pilot) {
     const CoincidingPoints coinciding(scan);
     if (!coinciding.any() || CoincidingPoints(pilot).any()) return;
     const auto found = std::ranges::find(coinciding.sensing, true);
@@ -109,7 +109,7 @@ void add_confocal_pair(const core::Scan& scan, core::Scan& pilot) {
 
 }  // namespace
 
-core::Scan pilot_scan_for(const Scene& scene, const core::Scan& scan, int num_bins) {
+core::WallScan pilot_scan_for(const Scene& scene, const core::WallScan& scan, int num_bins) {
     const bool few_bins = num_bins < kPilotFewBins;
     if (scan.pattern == core::ScanPattern::Exhaustive) {
         return pilot_scan(
@@ -118,8 +118,8 @@ core::Scan pilot_scan_for(const Scene& scene, const core::Scan& scan, int num_bi
     return pilot_scan(scene, scan, few_bins ? kPilotPointsForFewBins : kPilotPoints);
 }
 
-core::Scan pilot_scan(const Scene& scene, const core::Scan& scan, std::size_t num_points) {
-    core::Scan pilot = scan;
+core::WallScan pilot_scan(const Scene& scene, const core::WallScan& scan, std::size_t num_points) {
+    core::WallScan pilot = scan;
     pilot.sensing = subset(scan.sensing, num_points);
     if (scan.pattern == core::ScanPattern::Exhaustive) {
         pilot.illumination = subset(scan.illumination, num_points);
@@ -145,7 +145,7 @@ double squared_norm(const Transient& transient) {
 }
 
 PilotRuns::PilotRuns(const Scene& scene,
-                     const core::Scan& scan,
+                     const core::WallScan& scan,
                      const core::TimeAxis& axis,
                      double target,
                      double laser_spot_m2,
@@ -192,7 +192,7 @@ std::size_t PilotRuns::check_rays_per_pair() const {
 
 void PilotRuns::estimate_norm(int level) {
     constexpr std::size_t kPoints = 4;
-    const core::Scan few = pilot_scan(scene_, pilot_scan_, kPoints);
+    const core::WallScan few = pilot_scan(scene_, pilot_scan_, kPoints);
     Transient transient(few.num_pairs(), pilot_axis_.num_bins);
     for_each_batch(level, [&](const ElementSet& batch) {
         ThirdBounceScan integrator(scene_, few, pilot_axis_, rules(level));

@@ -19,9 +19,9 @@ namespace renderer {
 /// most twice as many; more of them for few bins, where there is less to compare per pair. Where
 /// there are retroreflectors and the scan has confocal pairs, one of these is among them, since its
 /// light outshines everything else.
-core::Scan pilot_scan_for(const Scene& scene, const core::Scan& scan, int num_bins);
+core::WallScan pilot_scan_for(const Scene& scene, const core::WallScan& scan, int num_bins);
 /// The same with a number of points on each side.
-core::Scan pilot_scan(const Scene& scene, const core::Scan& scan, std::size_t num_points);
+core::WallScan pilot_scan(const Scene& scene, const core::WallScan& scan, std::size_t num_points);
 
 /// The axis of pilot runs: bins begin at multiples of their width, so that shifting the axis by
 /// part of a bin changes neither the level chosen nor the energy. Axes with few bins are kept as
@@ -59,7 +59,7 @@ class PilotRuns {
     /// scene, scan   must outlive the runs
     /// target        relative L2 error over all of H
     PilotRuns(const Scene& scene,
-              const core::Scan& scan,
+              const core::WallScan& scan,
               const core::TimeAxis& axis,
               double target,
               double laser_spot_m2,
@@ -100,7 +100,7 @@ class PilotRuns {
     int run_reference(int level);
 
     const Scene& scene_;
-    core::Scan pilot_scan_;
+    core::WallScan pilot_scan_;
     core::TimeAxis pilot_axis_;
     double target_;
     SurfaceSubdivider subdivider_;

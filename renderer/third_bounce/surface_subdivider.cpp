@@ -97,7 +97,7 @@ double lobe_scale(const Material& material) {
 }  // namespace
 
 SurfaceSubdivider::SurfaceSubdivider(const Scene& scene,
-                                     const core::Scan& scan,
+                                     const core::WallScan& scan,
                                      const core::TimeAxis& axis,
                                      double laser_spot_m2,
                                      const CutLimits& limits)
@@ -109,7 +109,7 @@ SurfaceSubdivider::SurfaceSubdivider(const Scene& scene,
       origin_(scene.rays().origin()),
       returns_light_(CoincidingPoints(scan).any()),
       boxes_(scan, origin_),
-      visible_sides_(visible_sides(scene.objects(), scan)) {}
+      visible_sides_(visible_sides(scene.objects(), scan.path_ends())) {}
 
 bool SurfaceSubdivider::is_small_enough(const LegBounds& legs,
                                         const Vec3& center,

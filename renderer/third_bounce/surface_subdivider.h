@@ -25,7 +25,7 @@ class SurfaceSubdivider {
  public:
     /// scene, scan   must outlive the subdivider
     SurfaceSubdivider(const Scene& scene,
-                      const core::Scan& scan,
+                      const core::WallScan& scan,
                       const core::TimeAxis& axis,
                       double laser_spot_m2,
                       const CutLimits& limits = {});
@@ -82,7 +82,7 @@ class SurfaceSubdivider {
                                        double tolerance) const;
 
     const Scene& scene_;
-    const core::Scan& scan_;
+    const core::WallScan& scan_;
     core::TimeAxis axis_;
     double laser_spot_m2_;
     CutLimits limits_;

@@ -35,7 +35,7 @@ constexpr const char* kTrials = "trial runs for the error";
 class Integrator {
  public:
     Integrator(const Scene& scene,
-               const core::Scan& scan,
+               const core::WallScan& scan,
                const core::TimeAxis& axis,
                const RenderSettings& settings,
                const CutLimits& limits)
@@ -59,7 +59,7 @@ class Integrator {
     std::optional<double> error_within_reach();
 
     const Scene& scene_;
-    const core::Scan& scan_;
+    const core::WallScan& scan_;
     core::TimeAxis axis_;
     const RenderSettings& settings_;
     double target_;
@@ -243,7 +243,7 @@ ThirdBounce Integrator::integrate_all(const core::Progress& progress) {
 }  // namespace
 
 ThirdBounce integrate_third_bounce(const Scene& scene,
-                                   const core::Scan& scan,
+                                   const core::WallScan& scan,
                                    const core::TimeAxis& axis,
                                    const RenderSettings& settings,
                                    const core::Progress& progress,

@@ -43,7 +43,7 @@ struct ThirdBounce {
 /// source     design by the authors; kernel in triangle_histogram.cpp, size rule in
 ///            surface_subdivider.cpp
 ThirdBounce integrate_third_bounce(const Scene& scene,
-                                   const core::Scan& scan,
+                                   const core::WallScan& scan,
                                    const core::TimeAxis& axis,
                                    const RenderSettings& settings,
                                    const core::Progress& progress,

@@ -43,7 +43,7 @@ bool misses_axis(const BlockSphere& sphere,
 }  // namespace
 
 ThirdBounceScan::ThirdBounceScan(const Scene& scene,
-                                 const core::Scan& scan,
+                                 const core::WallScan& scan,
                                  const core::TimeAxis& axis,
                                  const ScanRules& rules)
     : scene_(scene),

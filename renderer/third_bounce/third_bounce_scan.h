@@ -29,7 +29,7 @@ class ThirdBounceScan {
  public:
     /// All references must outlive this.
     ThirdBounceScan(const Scene& scene,
-                    const core::Scan& scan,
+                    const core::WallScan& scan,
                     const core::TimeAxis& axis,
                     const ScanRules& rules);
 
@@ -82,7 +82,7 @@ class ThirdBounceScan {
     void store(std::size_t pair, std::span<const double> histogram);
 
     const Scene& scene_;
-    const core::Scan& scan_;
+    const core::WallScan& scan_;
     const core::TimeAxis& axis_;
     ScanRules rules_;
     const ElementSet* elements_ = nullptr;  ///< the batch

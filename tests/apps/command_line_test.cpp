@@ -83,7 +83,7 @@ TEST_F(CommandLine, ResponsesOfCapturesAreOffered) {
 TEST_F(CommandLine, CalibrationsServeRenderReconstructAndFit) {
     const std::string scene = make_scene("scene.json", {{"scan", {{"sensing_points", {8, 8}}}}});
     ASSERT_EQ(run("render " + scene + " -o " + file("plain.h5")).status, 0);
-    const core::Scan scan = nlos::read_capture(file("plain.h5")).scan;
+    const core::WallScan scan = nlos::read_capture(file("plain.h5")).scan.wall();
     core::Json calibration = {{"response", {{"jitter_fwhm_ps", 60.0}}}};
     for (std::size_t i = 0; i < scan.num_pairs(); ++i) {
         const core::Vec3& p = scan.sensing.positions[i];

@@ -69,7 +69,7 @@ const ScanCase kLegsIn{[] {
 }()};
 
 /// Lights one point of the curved wall: that of flat ones is not on it.
-core::Scan with_a_spot(core::Scan scan) {
+core::WallScan with_a_spot(core::WallScan scan) {
     const std::size_t spot = scan.sensing.size() / 5;
     scan.pattern = core::ScanPattern::Single;
     scan.illumination.positions = {scan.sensing.positions[spot]};
@@ -103,8 +103,8 @@ Capture render(const Place& place, const ScanCase& scan_case) {
     overrides.emplace_back("render.max_bounces=3");
     overrides.emplace_back("render.by_order=false");
     const BenchScene bench(NLOS_SOURCE_DIR "/scenes/" + place.scene + "/scene.json", overrides);
-    const core::Scan scan =
-        place.has_bent_wall() && has_spot ? with_a_spot(bench.scan()) : bench.scan();
+    const core::WallScan scan =
+        place.has_bent_wall() && has_spot ? with_a_spot(bench.scan().wall()) : bench.scan().wall();
     return renderer::render(bench.scene(), scan, bench.axis(), bench.settings(), {}).capture;
 }
 
@@ -127,8 +127,9 @@ void scale_lengths(Capture& capture, double factor) {
 }
 
 void scale_wall(Capture& capture, double factor) {
-    const core::ScanExtent extent = core::scan_extent(capture.scan);
-    for (core::WallPoints* points : {&capture.scan.sensing, &capture.scan.illumination}) {
+    const core::ScanExtent extent = core::scan_extent(capture.scan.wall());
+    for (core::WallPoints* points :
+         {&capture.scan.wall().sensing, &capture.scan.wall().illumination}) {
         if (points->size() < 2) continue;
         for (core::Vec3& position : points->positions) {
             for (int i = 0; i < 2; ++i) {
@@ -140,7 +141,7 @@ void scale_wall(Capture& capture, double factor) {
 }
 
 void swap_axes(Capture& capture) {
-    const auto [nx, ny] = *capture.scan.sensing.grid;
+    const auto [nx, ny] = *capture.scan.wall().sensing.grid;
     const core::Transient right = capture.transient;
     for (std::size_t x = 0; x < nx; ++x) {
         for (std::size_t y = 0; y < ny; ++y) {
@@ -151,7 +152,7 @@ void swap_axes(Capture& capture) {
 }
 
 void flip_x_axis(Capture& capture) {
-    const auto [nx, ny] = *capture.scan.sensing.grid;
+    const auto [nx, ny] = *capture.scan.wall().sensing.grid;
     const core::Transient right = capture.transient;
     for (std::size_t i = 0; i < nx * ny; ++i) {
         std::ranges::copy(right.histogram(i),
@@ -167,7 +168,7 @@ void reverse_time(Capture& capture) {
 
 /// Leaves the direct return in, twenty times as bright as all else, and time zero off by it.
 void add_direct_return(Capture& capture, double offset_m) {
-    const core::Scan& scan = capture.scan;
+    const core::WallScan& scan = capture.scan.wall();
     const float most = *std::ranges::max_element(capture.transient.values());
     for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
         const double opl = (scan.illumination.positions[scan.illumination_index(pair)] -
@@ -192,7 +193,7 @@ std::string bins_of(const Capture& right) {
 }
 
 std::string wall_of(const Capture& right) {
-    const core::ScanExtent extent = core::scan_extent(right.scan);
+    const core::ScanExtent extent = core::scan_extent(right.scan.wall());
     return fmt::format("capture.wall_size_m=[{:.6g},{:.6g}]", extent.size_m[0], extent.size_m[1]);
 }
 
@@ -208,7 +209,7 @@ std::vector<Slip> all_slips() {
         return [factor](Capture& capture) { scale_wall(capture, factor); };
     };
     const auto origin = [](core::OplOrigin stated) {
-        return [stated](Capture& capture) { capture.scan.opl_origin = stated; };
+        return [stated](Capture& capture) { capture.scan.wall().opl_origin = stated; };
     };
     return {
         {"ps taken for ns", kConfocal, lengths(1e3), bins_of},

@@ -16,7 +16,7 @@ namespace {
 
 struct Bench {
     const renderer::Scene& scene;
-    const core::Scan& scan;
+    const core::WallScan& scan;
     const renderer::ConnectionTechnique& technique;
     int draws;
     int repeats;

@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
         return 2;
     }
     const core::TriangleMesh mesh = bumpy_sphere(static_cast<std::uint32_t>(std::atoi(argv[1])));
-    const core::Scan scan = test_support::confocal_scan(grid(std::atoi(argv[2])));
+    const core::WallScan scan = test_support::confocal_scan(grid(std::atoi(argv[2])));
     const core::TimeAxis axis{0.6, 0.0048, 300};
     const std::vector<double> albedo(mesh.triangles.size(), 0.5);
     double value_s = 1e9;

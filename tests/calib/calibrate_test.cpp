@@ -88,7 +88,7 @@ TEST(Calibrate, ResultServesRenderReconstructAndFit) {
     // Recording and undoing it leaves the light where it was, up to the response.
     core::Capture rendered;
     rendered.scan = test_support::confocal_grid(6);
-    calib::replace_points(applied, rendered.scan);
+    calib::replace_points(applied, rendered.scan.wall());
     const core::TimeAxis axis{3.0, kBin_m, 200};
     rendered.time_axis = calib::axis_to_render(applied, axis);
     rendered.transient = core::Transient(36, rendered.time_axis.num_bins);
@@ -141,7 +141,7 @@ core::Capture counts_through(const Device& device,
                              const renderer::SceneGeometry& hidden) {
     std::vector<Vec3> spots;
     for (const auto& command : commands) spots.push_back(spot_of(device, command));
-    const core::Scan scan = test_support::confocal_scan(spots);
+    const core::WallScan scan = test_support::confocal_scan(spots);
     calib::FitSettings settings;
     settings.free.ambient = false;
     settings.free.objects = {{"target", true, false, false, false, false}};
@@ -187,8 +187,8 @@ TEST(Calibrate, AFitThroughTheResultFindsTheHiddenScene) {
     start.objects = {
         test_support::tilted_rectangle("target", center + Vec3(0.03, -0.03, 0.04), 0.3)};
     calib::FitInput input = test_support::fit_input(counts, start);
-    calib::replace_points(applied, input.capture.scan);
-    input.offset_m = calib::pair_offsets(applied, input.capture.scan);
+    calib::replace_points(applied, input.capture.scan.wall());
+    input.offset_m = calib::pair_offsets(applied, input.capture.scan.wall());
     input.settings.response = applied.response;
     const calib::FitResult fit = calib::fit_scene(input, {});
     ASSERT_TRUE(fit.converged) << fit.message;

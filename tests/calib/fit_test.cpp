@@ -302,7 +302,7 @@ TEST(Fit, RotationIsComparedModuloSymmetry) {
 }
 
 TEST(FitData, ThinningKeepsPairsAndPointsTogether) {
-    const core::Scan scan = confocal_grid(16);
+    const core::WallScan scan = confocal_grid(16);
     const calib::PairSubset subset = calib::thin(scan, 50);
     EXPECT_LE(subset.pairs.size(), 50U);
     EXPECT_GE(subset.pairs.size(), 16U);

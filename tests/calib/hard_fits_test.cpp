@@ -360,7 +360,7 @@ TEST(HardFit, RenderedLightBehindAnOccluderIsFittedByAnotherMesh) {
     renderer::SceneGeometry truth = only(tilted(25.0));
     truth.objects.push_back(
         rectangle("occluder", Vec3(0.12, -0.1, 0.45), turn(0.0, Vec3::UnitX()), 0.1, 0.075));
-    const core::Scan scan = test_support::confocal_grid(8);
+    const core::WallScan scan = test_support::confocal_grid(8);
     renderer::RenderSettings render_settings;
     render_settings.method = renderer::Estimator::Path;
     render_settings.samples = 32768;

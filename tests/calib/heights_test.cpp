@@ -92,7 +92,7 @@ TEST(Heights, AreFoundWithinTheirStatedErrors) {
 // that must be rounding. Cost and gradient against those without compression, by differences.
 TEST(Heights, RankDeficientRowsKeepCostAndGradient) {
     const renderer::SceneGeometry geometry = grid(9);
-    const core::Scan scan = test_support::confocal_grid(4);
+    const core::WallScan scan = test_support::confocal_grid(4);
     const core::Capture counts = test_support::counted(
         test_support::expected_capture(geometry, scan, 1e5, 0.02), "RankDeficient");
     calib::FitSettings settings;

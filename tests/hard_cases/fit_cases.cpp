@@ -77,7 +77,7 @@ double direct_returns_of_few_and_of_many_counts() {
 double gradients_of_the_light_of_tiny_and_large_objects() {
     // Written by hand, against automatic derivatives of another program text; relative L2 over all
     // bins, for each of the pose's six parameters.
-    const core::Scan scan = test_support::confocal_grid(2);
+    const core::WallScan scan = test_support::confocal_grid(2);
     calib::FitSettings settings;
     settings.free.ambient = false;
     settings.free.objects = {{"target", true, true, false, false, false}};

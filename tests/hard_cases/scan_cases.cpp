@@ -33,7 +33,7 @@ core::Transform turned_pose(const Vec3& translation) {
 }
 
 // Third bounce of a patch so small that it is a point: section 8.3 of the design.
-Quad light_of_patch(const core::Scan& scan,
+Quad light_of_patch(const core::WallScan& scan,
                     std::size_t pair,
                     const Vec3& place,
                     const Vec3& normal,
@@ -51,7 +51,7 @@ Quad light_of_patch(const core::Scan& scan,
 }
 
 // Worst error over all pairs of a scan of a patch of 0.2 mm.
-double patch_error(const core::Scan& scan) {
+double patch_error(const core::WallScan& scan) {
     const Vec3 place(0.1, -0.05, 1.0);
     const Vec3 u = 2e-4 * Vec3(1.0, 0.1, 0.3);
     const Vec3 v = 2e-4 * Vec3(-0.2, 1.0, -0.1);
@@ -85,7 +85,7 @@ double wall_frame_far_from_the_origin() {
     Worst worst;
     for (const double away : {1.0, 1e3, 1e5}) {
         const core::Transform pose = turned_pose(away * Vec3(0.6, -0.7, 0.4));
-        core::Scan scan;
+        core::WallScan scan;
         scan.sensing = scan.illumination = nlos_test::wall_grid({16, 24}, {0.06, 0.04}, pose);
         const nlos::WallFrame wall = nlos::derive_wall_frame(scan);
         worst.add(wall.grid ? std::abs(wall.grid->pitch_m[0] / 0.06 - 1.0) : HUGE_VAL);
@@ -111,7 +111,7 @@ double wall_frames_of_points_lines_and_duplicates() {
                                          nlos_test::wall_grid({4, 4}, {1e-9, 1e-9}, pose)};
     shapes[3].grid.reset();
     for (const core::WallPoints& points : shapes) {
-        core::Scan scan;
+        core::WallScan scan;
         scan.sensing = scan.illumination = points;
         const nlos::WallFrame wall = nlos::derive_wall_frame(scan);
         const core::Mat3 axes = wall.world_from_wall.linear();
@@ -136,10 +136,10 @@ double light_on_curved_and_irregular_walls() {
     }
     positions.insert(positions.end(), positions.begin(), positions.end());
     Worst worst;
-    for (core::Scan scan : {test_support::confocal_scan(positions),
-                            test_support::confocal_scan({positions[5]}),
-                            test_support::single_scan(positions[3], positions),
-                            test_support::exhaustive_scan(positions, positions)}) {
+    for (core::WallScan scan : {test_support::confocal_scan(positions),
+                                test_support::confocal_scan({positions[5]}),
+                                test_support::single_scan(positions[3], positions),
+                                test_support::exhaustive_scan(positions, positions)}) {
         for (core::WallPoints* points : {&scan.sensing, &scan.illumination}) {
             for (std::size_t i = 0; i < points->size(); ++i) {
                 points->normals[i] = (0.5 * (middle - points->positions[i])).normalized();

@@ -40,7 +40,7 @@ core::Transient rendered_tangent_triangle(const core::TimeAxis& axis,
     geometry.objects[0].mesh.vertices = {{-0.4, -0.3, 1.0}, {0.5, -0.2, 1.0}, {0.0, 0.4, 1.0}};
     for (Vec3& vertex : geometry.objects[0].mesh.vertices) vertex *= unit;
     geometry.objects[0].mesh.triangles = {{0, 1, 2}};
-    const core::Scan scan = test_support::confocal_scan({Vec3::Zero()});
+    const core::WallScan scan = test_support::confocal_scan({Vec3::Zero()});
     renderer::RenderSettings settings;
     settings.method = method;
     settings.samples = 512;
@@ -58,7 +58,7 @@ double sum_of(const core::Transient& transient) {
 double bins_of_kilometre_legs() {
     core::Rng rng(test_support::seed_of("bins_of_kilometre_legs"), 0, 0);
     Worst worst;
-    core::Scan scan = test_support::confocal_scan({Vec3::Zero()});
+    core::WallScan scan = test_support::confocal_scan({Vec3::Zero()});
     scan.opl_origin = core::OplOrigin::Device;
     for (int i = 0; i < 20'000; ++i) {
         scan.laser_position = 1e3 * test_support::random_point(rng);

@@ -39,12 +39,12 @@ class ObservedReconstruction : public testing::TestWithParam<MaskCase> {
         core::Capture capture = nlos_test::confocal_capture(
             nlos_test::wall_grid({kWallColumns, kWallColumns}, {kWallPitch_m, kWallPitch_m}),
             {0.0, 0.016, 144});
-        capture.scan.pattern = GetParam().pattern;
-        if (capture.scan.pattern == ScanPattern::Single) {
-            capture.scan.illumination = nlos_test::wall_grid({1, 1}, {1.0, 1.0});
+        capture.scan.wall().pattern = GetParam().pattern;
+        if (capture.scan.wall().pattern == ScanPattern::Single) {
+            capture.scan.wall().illumination = nlos_test::wall_grid({1, 1}, {1.0, 1.0});
         }
-        if (capture.scan.pattern == ScanPattern::Exhaustive) {
-            capture.scan.illumination = nlos_test::wall_grid({2, 1}, {0.4, 0.4});
+        if (capture.scan.wall().pattern == ScanPattern::Exhaustive) {
+            capture.scan.wall().illumination = nlos_test::wall_grid({2, 1}, {0.4, 0.4});
         }
         capture.transient = core::Transient(capture.scan.num_pairs(), 144);
         nlos_test::add_scatterer(capture, kPlace, 4.0);
@@ -56,13 +56,13 @@ class ObservedReconstruction : public testing::TestWithParam<MaskCase> {
         std::mt19937_64 generator(test_support::seed_of("DeadPoints"));
         std::bernoulli_distribution is_dead(0.125);
         std::vector<BinRange> of_point;
-        for (std::size_t i = 0; i < capture.scan.sensing.size(); ++i) {
+        for (std::size_t i = 0; i < capture.scan.wall().sensing.size(); ++i) {
             const bool is_aside = i / kWallColumns < kWallColumns / 5;
             of_point.push_back(is_aside || is_dead(generator) ? BinRange{} : kGate);
         }
         std::vector<BinRange> ranges;
         for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
-            ranges.push_back(of_point[capture.scan.sensing_index(pair)]);
+            ranges.push_back(of_point[capture.scan.wall().sensing_index(pair)]);
         }
         core::restrict_observed(capture, ranges);
     }

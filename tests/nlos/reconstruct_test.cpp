@@ -65,14 +65,14 @@ TEST(Reconstruct, AutoTakesTheLightConeTransformForConfocalGrids) {
 
 TEST(Reconstruct, AutoTakesThePhasorFieldForOtherScansAndSaysWhy) {
     core::Capture capture = example();
-    capture.scan.pattern = core::ScanPattern::Single;
-    capture.scan.illumination = nlos_test::wall_grid({1, 1}, {1.0, 1.0});
+    capture.scan.wall().pattern = core::ScanPattern::Single;
+    capture.scan.wall().illumination = nlos_test::wall_grid({1, 1}, {1.0, 1.0});
     const Reconstruction single = reconstruct(capture, {}, {});
     EXPECT_EQ(single.method, "phasor");
     EXPECT_NE(single.reason.find("single-laser scan"), std::string::npos);
     EXPECT_NEAR(*single.settings.phasor.wavelength_m, 0.2, 1e-9);
     core::Capture list = example();
-    list.scan.sensing.grid.reset();
+    list.scan.wall().sensing.grid.reset();
     const Reconstruction listed = reconstruct(list, with({"volume.voxels=[4,4,8]"}), {});
     EXPECT_EQ(listed.method, "phasor");
     EXPECT_NE(listed.reason.find("list of wall points"), std::string::npos);
@@ -89,7 +89,7 @@ TEST(Reconstruct, AutoFallsBackToBackprojectionAndSaysWhy) {
 
 TEST(Reconstruct, RefusalsNameTheMethodThatWorks) {
     core::Capture list = example();
-    list.scan.sensing.grid.reset();
+    list.scan.wall().sensing.grid.reset();
     core::Capture gated = example();
     gated.time_axis = {1.0, 0.3, 1};
     gated.transient = core::Transient(gated.scan.num_pairs(), 1);
@@ -105,8 +105,8 @@ TEST(Reconstruct, RefusalsNameTheMethodThatWorks) {
 
 TEST(Reconstruct, ConfocalMethodsTakeASingleLaserScanByItsMidpoints) {
     core::Capture capture = example();
-    capture.scan.pattern = core::ScanPattern::Single;
-    capture.scan.illumination = nlos_test::wall_grid({1, 1}, {1.0, 1.0});
+    capture.scan.wall().pattern = core::ScanPattern::Single;
+    capture.scan.wall().illumination = nlos_test::wall_grid({1, 1}, {1.0, 1.0});
     std::fill(capture.transient.values().begin(), capture.transient.values().end(), 0.0F);
     const Vec3 scatterer(0.0125, -0.0125, 0.5);
     nlos_test::add_scatterer(capture, scatterer, 4.0);

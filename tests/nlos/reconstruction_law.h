@@ -42,12 +42,12 @@ class ReconstructionLaw : public testing::TestWithParam<LawCase> {
                                       std::size_t columns = kColumns) {
         core::Capture capture =
             confocal_capture(wall_grid({columns, columns}, {kPitch_m, kPitch_m}, pose), axis);
-        capture.scan.pattern = GetParam().pattern;
+        capture.scan.wall().pattern = GetParam().pattern;
         if (GetParam().pattern == core::ScanPattern::Single) {
-            capture.scan.illumination = wall_grid({1, 1}, {1.0, 1.0}, pose);
+            capture.scan.wall().illumination = wall_grid({1, 1}, {1.0, 1.0}, pose);
         }
         if (GetParam().pattern == core::ScanPattern::Exhaustive) {
-            capture.scan.illumination = wall_grid({2, 1}, {0.4, 0.4}, pose);
+            capture.scan.wall().illumination = wall_grid({2, 1}, {0.4, 0.4}, pose);
         }
         capture.transient = core::Transient(capture.scan.num_pairs(), axis.num_bins);
         return capture;
@@ -57,7 +57,7 @@ class ReconstructionLaw : public testing::TestWithParam<LawCase> {
     static nlos::Reconstruction run(const core::Capture& capture,
                                     int num_z = 75,
                                     const std::array<double, 2>& z_range_m = {0.3, 0.9}) {
-        const auto columns = static_cast<int>(std::sqrt(capture.scan.sensing.size()));
+        const auto columns = static_cast<int>(std::sqrt(capture.scan.wall().sensing.size()));
         nlos::ReconstructSettings settings;
         settings.volume = {std::array{columns, columns, num_z}, z_range_m};
         for (const std::string& text : GetParam().overrides) {
@@ -94,7 +94,7 @@ class ReconstructionLaw : public testing::TestWithParam<LawCase> {
     }
 
     /// Smallest and largest depth at which paths as long as those to `place` meet its column.
-    static std::array<double, 2> depths_of_light(const core::Scan& scan,
+    static std::array<double, 2> depths_of_light(const core::WallScan& scan,
                                                  const core::Vec3& place,
                                                  const core::Vec3& column) {
         std::array<double, 2> range{1e300, 0.0};

@@ -86,7 +86,7 @@ TEST_P(ReconstructionLaw, APointBetweenColumnsIsSeenWhereItsLightPassesTheNeares
         const Vec3 found = brightest_point(run(capture));
         EXPECT_NEAR(found.x(), column.x(), 1e-6) << place.transpose();
         EXPECT_NEAR(found.y(), column.y(), 1e-6) << place.transpose();
-        const auto [nearest, farthest] = depths_of_light(capture.scan, place, column);
+        const auto [nearest, farthest] = depths_of_light(capture.scan.wall(), place, column);
         EXPECT_GT(found.z(), nearest - depth_tolerance_m(place)) << place.transpose();
         EXPECT_LT(found.z(), farthest + depth_tolerance_m(place)) << place.transpose();
     }
@@ -131,14 +131,14 @@ TEST_P(ReconstructionLaw, TheAxisMayStartLate) {
 
 TEST_P(ReconstructionLaw, DeviceLegsAreTakenOff) {
     core::Capture capture = dark_capture();
-    capture.scan.opl_origin = core::OplOrigin::Device;
-    capture.scan.laser_position = Vec3(0.2, 0.3, -0.4);
-    capture.scan.detector_position = Vec3(-0.3, 0.1, -0.5);
+    capture.scan.wall().opl_origin = core::OplOrigin::Device;
+    capture.scan.wall().laser_position = Vec3(0.2, 0.3, -0.4);
+    capture.scan.wall().detector_position = Vec3(-0.3, 0.1, -0.5);
     capture.time_axis.opl_start_m = 0.8;
     const Vec3 place(0.06, -0.1, 0.55);
     nlos_test::add_scatterer(capture, place, 4.0);
     const Vec3 found = brightest_point(run(capture));
-    const auto [nearest, farthest] = depths_of_light(capture.scan, place, found);
+    const auto [nearest, farthest] = depths_of_light(capture.scan.wall(), place, found);
     EXPECT_LT((found - place).head<2>().norm(), 0.5 * kPitch_m);
     EXPECT_GT(found.z(), nearest - depth_tolerance_m(place));
     EXPECT_LT(found.z(), farthest + depth_tolerance_m(place));
@@ -151,7 +151,7 @@ TEST_P(ReconstructionLaw, ALargerWorldGivesTheSameVolume) {
     nlos_test::add_scatterer(small, place, 4.0);
     core::Capture large = small;
     large.time_axis.bin_width_m *= factor;
-    for (core::WallPoints* points : {&large.scan.sensing, &large.scan.illumination}) {
+    for (core::WallPoints* points : {&large.scan.wall().sensing, &large.scan.wall().illumination}) {
         for (Vec3& position : points->positions) position *= factor;
     }
     const Reconstruction here = run(small);

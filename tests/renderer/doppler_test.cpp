@@ -97,8 +97,8 @@ TEST_P(DopplerOf, MovingPatchHasTheClosedForm) {
         for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
             const auto length_after = [&](double seconds) {
                 const Vec3 x = p + seconds * kVelocity;
-                return (x - scan.sensing.positions[scan.sensing_index(pair)]).norm() +
-                       (x - scan.illumination.positions[scan.illumination_index(pair)]).norm();
+                return (x - scan.wall().sensing_point(pair)).norm() +
+                       (x - scan.wall().illumination_point(pair)).norm();
             };
             const double expected = (length_after(1e-6) - length_after(-1e-6)) / 2e-6;
             const double found = mean_velocity(*capture.velocity, pair);

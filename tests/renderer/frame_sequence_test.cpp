@@ -43,11 +43,7 @@ core::Scan image_of_four_by_three() {
     camera.position_m = Vec3(0.1, 0.2, -0.5);
     camera.look_at_m = Vec3(0, 0, 1);
     camera.resolution = {4, 3};
-    core::Scan scan;
-    scan.pattern = core::ScanPattern::Single;
-    scan.opl_origin = core::OplOrigin::Device;
-    scan.camera = camera;
-    return scan;
+    return core::ImageScan{camera};
 }
 
 renderer::RenderResult render_sequence(const core::Scan& scan,
@@ -91,7 +87,8 @@ TEST(FrameSequence, MovingGateSeesTheBinsOfTheHistogram) {
 // Frame i is what a scene with the objects moved gives, to the bit, for scans and for cameras.
 TEST(FrameSequence, FramesAreRendersOfTheMovedScene) {
     for (const core::Scan& scan :
-         {test_support::confocal_scan(test_support::kThreeWallPoints), image_of_four_by_three()}) {
+         {core::Scan(test_support::confocal_scan(test_support::kThreeWallPoints)),
+          image_of_four_by_three()}) {
         auto description = description_with({3, 0.05, 0.25});
         description.time_axis.bin_width_m = 1.8;
         std::vector<renderer::Frame> seen;

@@ -291,7 +291,7 @@ TEST(SensorRender, FramesFollowObjectsAndPoses) {
     description.time_axis = {kSensorAxis};
     description.frames = renderer::FrameSettings{2, 0.0, 0.1};
     description.render = sensor_render_settings(renderer::Estimator::ThirdBounce);
-    const core::Scan scan = core::scan_of_zones(setup);
+    const core::SensorScan scan = core::scan_of_zones(setup);
     const auto scene = std::make_shared<const renderer::Scene>(
         renderer::SceneGeometry{{object}, {}}, scan, setup.wall);
     const core::Capture capture =
@@ -304,7 +304,7 @@ TEST(SensorRender, FramesFollowObjectsAndPoses) {
     for (std::size_t i = 0; i < first.size(); ++i) {
         EXPECT_NEAR(first[i], second[i], 2e-3 * light_in(capture.transient));
     }
-    EXPECT_NEAR(capture.scan.detector_position.x() - scan.detector_position.x(), 0.1, 1e-12);
+    EXPECT_NEAR(capture.scan.wall().detector_position.x() - scan.detector_position.x(), 0.1, 1e-12);
 }
 
 TEST(SensorRender, WhatItCannotDoIsRefused) {

@@ -19,7 +19,7 @@ using renderer::Estimator;
 
 const core::TimeAxis kStatedAxis{1.0, 0.02, 96};
 
-core::Scan scan_of(int points) {
+core::WallScan scan_of(int points) {
     std::vector<Vec3> positions;
     for (int i = 0; i < points; ++i) {
         for (int j = 0; j < points; ++j) {
@@ -30,7 +30,7 @@ core::Scan scan_of(int points) {
     return test_support::confocal_scan(positions);
 }
 
-renderer::Scene facing_scene(const core::Scan& scan) {
+renderer::Scene facing_scene(const core::WallScan& scan) {
     return {{test_support::facing_surfaces(), {}}, scan, {}};
 }
 
@@ -48,7 +48,7 @@ double relative_distance(const core::Transient& a, const core::Transient& b) {
     return std::sqrt(sum / squared_norm(b));
 }
 
-core::Transient reference_of(const renderer::Scene& scene, const core::Scan& scan) {
+core::Transient reference_of(const renderer::Scene& scene, const core::WallScan& scan) {
     renderer::RenderSettings settings;
     settings.method = Estimator::ThirdBounce;
     settings.target_error = 2e-3;
@@ -91,7 +91,7 @@ class SampledEstimator : public testing::TestWithParam<Estimator> {};
 // the heavy tails of narrow connections leave a quarter.
 TEST_P(SampledEstimator, ReachesItsTargetAndKnowsItsError) {
     constexpr double kTarget = 0.1;
-    const core::Scan scan = scan_of(16);
+    const core::WallScan scan = scan_of(16);
     const renderer::Scene scene = facing_scene(scan);
     renderer::RenderSettings settings;
     settings.method = GetParam();
@@ -111,10 +111,10 @@ INSTANTIATE_TEST_SUITE_P(StatedError,
                                          Estimator::Restir),
                          [](const auto& test) { return std::string(core::enum_name(test.param)); });
 
-// A pass spreads its samples evenly: four times as many leave far less than half of the error, which
-// is known all the same. Passes that tell a variance of each bin are short, and lose that.
+// A pass spreads its samples evenly: four times as many leave far less than half of the error,
+// which is known all the same. Passes that tell a variance of each bin are short, and lose that.
 TEST(StatedError, LongPassesHaveLessNoise) {
-    const core::Scan scan = scan_of(16);
+    const core::WallScan scan = scan_of(16);
     const renderer::Scene scene = facing_scene(scan);
     const core::Transient reference = reference_of(scene, scan);
     renderer::RenderSettings settings;
@@ -134,7 +134,7 @@ TEST(StatedError, LongPassesHaveLessNoise) {
 
 TEST(StatedError, AutoReachesItWithHigherOrders) {
     constexpr double kTarget = 0.05;
-    const core::Scan scan = scan_of(8);
+    const core::WallScan scan = scan_of(8);
     const renderer::Scene scene = facing_scene(scan);
     renderer::RenderSettings settings;
     settings.max_bounces = 5;
@@ -154,7 +154,7 @@ TEST(StatedError, AutoReachesItWithHigherOrders) {
 // it is said to be. The direct return keeps its bin.
 TEST(StatedError, AutoAveragesHigherOrdersOverNeighbours) {
     constexpr double kTarget = 0.01;
-    core::Scan scan = scan_of(16);
+    core::WallScan scan = scan_of(16);
     scan.sensing.grid = {16, 16};
     scan.illumination.grid = {16, 16};
     const renderer::Scene scene = facing_scene(scan);
@@ -185,7 +185,7 @@ TEST(StatedError, AutoAveragesHigherOrdersOverNeighbours) {
 }
 
 TEST(StatedError, OrdersAreLeftOutWhenTheyAreBelowWhatIsAllowed) {
-    const core::Scan scan = scan_of(8);
+    const core::WallScan scan = scan_of(8);
     const renderer::Scene scene = facing_scene(scan);
     renderer::RenderSettings settings;
     settings.max_bounces = 6;
@@ -225,7 +225,7 @@ TEST(StatedError, OrdersAreLeftOutWhenTheyAreBelowWhatIsAllowed) {
 }
 
 TEST(StatedError, AutoSaysWhichOrdersItLeavesOut) {
-    const core::Scan scan = scan_of(4);
+    const core::WallScan scan = scan_of(4);
     // A single plane lights nothing but the wall: there is no order 4 to 6 without the wall.
     const renderer::Scene scene({{test_support::parallelogram_object(
                                      {{-0.1, -0.1, 0.8}, {0.2, 0.0, 0.0}, {0.0, 0.2, 0.0}})},
@@ -246,7 +246,7 @@ TEST(StatedError, AutoSaysWhichOrdersItLeavesOut) {
 // Few large facets need few elements: however coarse the target, the error is not 0, and what is
 // stated bounds it.
 TEST(StatedError, CoarseTargetsOnLargeFacetsStateAnError) {
-    const core::Scan scan = scan_of(8);
+    const core::WallScan scan = scan_of(8);
     const renderer::Scene scene(
         {{test_support::parallelogram_object({{-0.2, -0.2, 0.6}, {0.4, 0.05, 0}, {0, 0.4, 0.1}})},
          {}},
@@ -266,7 +266,7 @@ TEST(StatedError, CoarseTargetsOnLargeFacetsStateAnError) {
 }
 
 TEST(StatedError, RestirStatesOneForFewSamples) {
-    const core::Scan scan = scan_of(6);
+    const core::WallScan scan = scan_of(6);
     const renderer::Scene scene = facing_scene(scan);
     const core::TimeAxis gate{1.5, 0.3, 1};
     renderer::RenderSettings settings;
@@ -304,7 +304,7 @@ TEST(StatedError, AnErrorThatIsKnownToBeLargerDoesNotKeepPassesGoing) {
 }
 
 TEST(StatedError, FramesThatShareTheirPastRefuseOne) {
-    const core::Scan scan = scan_of(2);
+    const core::WallScan scan = scan_of(2);
     renderer::RenderSettings settings;
     settings.method = Estimator::Restir;
     settings.target_error = 0.1;

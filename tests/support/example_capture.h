@@ -27,13 +27,13 @@ inline core::WallPoints as_list(core::WallPoints points) {
 /// A small capture, every histogram value different: 3 x 2 sensing points and 5 bins.
 inline core::Capture example_capture(core::ScanPattern pattern) {
     core::Capture capture;
-    capture.scan.pattern = pattern;
-    capture.scan.sensing = example_grid(3, 2);
-    if (pattern == core::ScanPattern::Confocal) capture.scan.illumination = capture.scan.sensing;
-    if (pattern == core::ScanPattern::Single) capture.scan.illumination = example_grid(1, 1, 0.3);
-    if (pattern == core::ScanPattern::Exhaustive) {
-        capture.scan.illumination = example_grid(2, 2, 0.3);
-    }
+    core::WallScan scan;
+    scan.pattern = pattern;
+    scan.sensing = example_grid(3, 2);
+    if (pattern == core::ScanPattern::Confocal) scan.illumination = scan.sensing;
+    if (pattern == core::ScanPattern::Single) scan.illumination = example_grid(1, 1, 0.3);
+    if (pattern == core::ScanPattern::Exhaustive) scan.illumination = example_grid(2, 2, 0.3);
+    capture.scan = scan;
     capture.time_axis = {0.25, 0.008, 5};
     capture.transient = core::Transient(capture.scan.num_pairs(), capture.time_axis.num_bins);
     float next = 0.5F;
@@ -52,8 +52,8 @@ inline core::Capture example_square() {
         points.positions.emplace_back(0.2 * (i / 3 - 1), 0.2 * (i % 3 - 1), 0.0);
     }
     points.normals.assign(9, core::Vec3::UnitZ());
-    capture.scan.sensing = points;
-    capture.scan.illumination = points;
+    capture.scan.wall().sensing = points;
+    capture.scan.wall().illumination = points;
     capture.time_axis = {0.125, 0.0047, 4};
     capture.transient = core::Transient(9, 4);
     float next = 0.0F;
@@ -70,13 +70,12 @@ inline core::Capture example_image() {
     camera.fov_y_deg = 40.0;
     camera.resolution = {3, 2};
     camera.light_m = core::Vec3(0.0, 2.0, 0.0);
-    capture.scan = core::Scan();
-    capture.scan.pattern = core::ScanPattern::Single;
-    capture.scan.opl_origin = core::OplOrigin::Device;
-    capture.scan.laser_position = camera.light_position();
-    capture.scan.detector_position = camera.position_m;
-    capture.scan.camera = camera;
+    capture.scan = core::ImageScan{camera};
     return capture;
+}
+
+inline core::Json camera_json(const core::Capture& image) {
+    return core::write_value(image.scan.as<core::ImageScan>()->camera);
 }
 
 }  // namespace test_support

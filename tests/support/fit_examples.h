@@ -32,7 +32,7 @@ inline renderer::Object tilted_rectangle(const std::string& name,
 }
 
 /// A confocal grid of n x n points over 1 m.
-inline core::Scan confocal_grid(int n) {
+inline core::WallScan confocal_grid(int n) {
     renderer::SceneDescription description;
     description.scan.sensing_points = {n, n};
     return renderer::make_scan(description);
@@ -43,7 +43,7 @@ inline constexpr double kFitFwhm_ps = 94.0;
 
 /// Expected data of a model at its start, as forward_model computes them.
 inline core::Capture expected_capture(const renderer::SceneGeometry& geometry,
-                                      const core::Scan& scan,
+                                      const core::WallScan& scan,
                                       double photons,
                                       double ambient) {
     calib::FitSettings settings;

@@ -22,8 +22,8 @@ inline core::WallPoints random_wall_points(std::size_t count, core::Rng& rng) {
 }
 
 /// All kinds of scans in turn.
-inline core::Scan random_scan(std::uint64_t kind, core::Rng& rng) {
-    core::Scan scan;
+inline core::WallScan random_scan(std::uint64_t kind, core::Rng& rng) {
+    core::WallScan scan;
     if (kind % 4 == 0) {
         scan = confocal_scan(random_wall_points(4, rng).positions);
         scan.opl_origin = core::OplOrigin::Device;
@@ -54,7 +54,7 @@ inline std::vector<double> random_weights(std::size_t count, core::Rng& rng) {
 /// A scene, and a random linear function of its histograms.
 struct GradientCase {
     OccludedMesh shapes;
-    core::Scan scan;
+    core::WallScan scan;
     calib::ThirdBounceVjpSettings settings;
     std::vector<double> weights;
 

@@ -35,7 +35,7 @@ std::vector<Vec3> wall_grid(int points) {
 }
 
 // Up to 100 points, so that pilot runs see all of some scans and a part of others.
-core::Scan random_scan(core::Rng& rng) {
+core::WallScan random_scan(core::Rng& rng) {
     const double kind = rng.uniform();
     const int points = static_cast<int>(between(rng, 6.0, 11.0));
     if (kind < 0.6) return confocal_scan(wall_grid(points));

@@ -16,7 +16,7 @@ namespace test_support {
 struct OccluderScene {
     std::string name;
     std::vector<Parallelogram> sheets;  ///< all that reflects and all that hides
-    core::Scan scan;
+    core::WallScan scan;
     core::TimeAxis axis;
 
     renderer::Scene scene() const;

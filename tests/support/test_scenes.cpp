@@ -81,25 +81,25 @@ core::WallPoints wall_points(const std::vector<Vec3>& positions) {
     return points;
 }
 
-core::Scan confocal_scan(const std::vector<Vec3>& positions) {
-    core::Scan scan;
+core::WallScan confocal_scan(const std::vector<Vec3>& positions) {
+    core::WallScan scan;
     scan.pattern = core::ScanPattern::Confocal;
     scan.sensing = wall_points(positions);
     scan.illumination = scan.sensing;
     return scan;
 }
 
-core::Scan single_scan(const Vec3& illumination, const std::vector<Vec3>& sensing) {
-    core::Scan scan;
+core::WallScan single_scan(const Vec3& illumination, const std::vector<Vec3>& sensing) {
+    core::WallScan scan;
     scan.pattern = core::ScanPattern::Single;
     scan.sensing = wall_points(sensing);
     scan.illumination = wall_points({illumination});
     return scan;
 }
 
-core::Scan exhaustive_scan(const std::vector<Vec3>& illumination,
-                           const std::vector<Vec3>& sensing) {
-    core::Scan scan;
+core::WallScan exhaustive_scan(const std::vector<Vec3>& illumination,
+                               const std::vector<Vec3>& sensing) {
+    core::WallScan scan;
     scan.pattern = core::ScanPattern::Exhaustive;
     scan.sensing = wall_points(sensing);
     scan.illumination = wall_points(illumination);
@@ -107,11 +107,7 @@ core::Scan exhaustive_scan(const std::vector<Vec3>& illumination,
 }
 
 core::Scan image_of(const core::PinholeCamera& camera) {
-    core::Scan scan;
-    scan.pattern = core::ScanPattern::Single;
-    scan.opl_origin = core::OplOrigin::Device;
-    scan.camera = camera;
-    return scan;
+    return core::ImageScan{camera};
 }
 
 std::vector<renderer::Object> facing_surfaces() {
@@ -125,7 +121,7 @@ std::vector<renderer::Object> facing_surfaces() {
 
 std::vector<float> third_bounce_by_quadrature(const Parallelogram& hidden,
                                               const Parallelogram& occluder,
-                                              const core::Scan& scan,
+                                              const core::WallScan& scan,
                                               const core::TimeAxis& axis,
                                               double wall_albedo,
                                               int steps) {

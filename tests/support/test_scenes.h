@@ -37,10 +37,10 @@ renderer::Object sphere_object(const core::Vec3& center,
 /// Points on the wall z = 0 with normal +z.
 core::WallPoints wall_points(const std::vector<core::Vec3>& positions);
 
-core::Scan confocal_scan(const std::vector<core::Vec3>& positions);
-core::Scan single_scan(const core::Vec3& illumination, const std::vector<core::Vec3>& sensing);
-core::Scan exhaustive_scan(const std::vector<core::Vec3>& illumination,
-                           const std::vector<core::Vec3>& sensing);
+core::WallScan confocal_scan(const std::vector<core::Vec3>& positions);
+core::WallScan single_scan(const core::Vec3& illumination, const std::vector<core::Vec3>& sensing);
+core::WallScan exhaustive_scan(const std::vector<core::Vec3>& illumination,
+                               const std::vector<core::Vec3>& sensing);
 
 /// What a camera records, one image.
 core::Scan image_of(const core::PinholeCamera& camera);
@@ -55,7 +55,7 @@ std::vector<renderer::Object> facing_surfaces();
 /// wall_albedo   of both wall points
 std::vector<float> third_bounce_by_quadrature(const Parallelogram& hidden,
                                               const Parallelogram& occluder,
-                                              const core::Scan& scan,
+                                              const core::WallScan& scan,
                                               const core::TimeAxis& axis,
                                               double wall_albedo,
                                               int steps);

@@ -23,7 +23,7 @@ constexpr float kBrightColumn = 0.5F;
 // Bins added up while they stay below half the wall points' distance, as our methods do, and left
 // out before 0, which some methods refuse, and from `end_m` on.
 core::Capture with_coarse_bins(const core::Capture& capture, double end_m) {
-    const double half_m = 0.5 * point_distance_m(capture.scan);
+    const double half_m = 0.5 * point_distance_m(capture.scan.wall());
     const double width_m = capture.time_axis.bin_width_m;
     const auto factor =
         static_cast<std::size_t>(std::clamp(std::floor(half_m / width_m), 1.0, 64.0));
@@ -99,7 +99,7 @@ std::vector<CaptureRow> measure_captures(Contenders& contenders,
         const double farthest_m = 2.0 * one.depth_m;
         const core::Capture capture =
             with_coarse_bins(nlos::read_capture(one.file, one.capture), 3.0 * farthest_m);
-        const std::string pattern(core::enum_name(capture.scan.pattern));
+        const std::string pattern(capture.scan.name());
         const std::string name = fmt::format("capture_{}", c + 1);
         SharedCapture shared(
             contenders, name, name, capture, {kNearest_m, farthest_m, std::nullopt});

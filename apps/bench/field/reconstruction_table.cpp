@@ -136,7 +136,7 @@ const std::vector<ReconstructionMethod>& reconstruction_methods() {
     return methods;
 }
 
-double point_distance_m(const core::Scan& scan) {
+double point_distance_m(const core::WallScan& scan) {
     const std::vector<core::Vec3>& points = scan.scanned_points().positions;
     double distance_m = std::numeric_limits<double>::infinity();
     for (std::size_t i = 1; i < points.size(); ++i) {
@@ -165,10 +165,10 @@ SharedCapture::SharedCapture(Contenders& contenders,
       kind_(std::move(kind)),
       planes_(planes),
       // The wavelength that our phasor field takes.
-      wavelength_m_((capture.scan.pattern == core::ScanPattern::Confocal ? 6.0 : 4.0) *
-                    point_distance_m(capture.scan)) {
+      wavelength_m_((capture.scan.wall().is_confocal() ? 6.0 : 4.0) *
+                    point_distance_m(capture.scan.wall())) {
     const auto side =
-        std::lround(std::sqrt(static_cast<double>(capture.scan.scanned_points().size())));
+        std::lround(std::sqrt(static_cast<double>(capture.scan.wall().scanned_points().size())));
     columns_ = static_cast<int>(side);
     nlos::write_capture(stem_ + ".h5", capture);
     nlos::write_capture(stem_ + "_for_ytal.h5", capture, {.for_ytal = true, .layout = ""});

@@ -99,7 +99,7 @@ NLOS_FIGURES(ReconstructionSummary,
              reason);
 
 /// The distance of neighbouring wall points [m].
-double point_distance_m(const core::Scan& scan);
+double point_distance_m(const core::WallScan& scan);
 
 /// Depths that a volume is made at.
 struct DepthPlanes {

@@ -181,9 +181,8 @@ core::Transient RenderingTask::read_histograms(const std::string& path) const {
 }
 
 std::array<std::size_t, 2> RenderingTask::grid() const {
-    if (const auto& camera = scene_.scan().camera) return {camera->width(), camera->height()};
-    const auto side = static_cast<std::size_t>(task_.points);
-    return {side, side};
+    const std::vector<std::size_t> extents = scene_.scan().pair_extents();
+    return {extents[0], extents[1]};
 }
 
 void RenderingTask::set_samples(int samples, RenderingRow& row) const {
@@ -210,9 +209,9 @@ core::Json RenderingTask::scene_request() const {
                        {"bin_width_m", scene_.axis().bin_width_m},
                        {"num_bins", scene_.axis().num_bins}};
     const auto list = [](const core::Vec3& v) { return core::Json{v.x(), v.y(), v.z()}; };
-    if (const auto& camera = scene_.scan().camera) {
-        request["camera"] = core::write_value(*camera);
-        request["light_m"] = list(camera->light_position());
+    if (const auto* image = scene_.scan().as<core::ImageScan>()) {
+        request["camera"] = core::write_value(image->camera);
+        request["light_m"] = list(image->camera.light_position());
         return request;
     }
     request["relay_wall"] = {{"center_m", list(wall.center_m)},
@@ -221,7 +220,7 @@ core::Json RenderingTask::scene_request() const {
                              {"normal", list(pose.linear().col(2))},
                              {"size_m", wall.size_m},
                              {"albedo", wall.albedo}};
-    request["illumination_m"] = list(scene_.scan().illumination.positions.front());
+    request["illumination_m"] = list(scene_.scan().wall().illumination.positions.front());
     request["sensing_points"] = grid();
     return request;
 }

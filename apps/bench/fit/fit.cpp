@@ -186,7 +186,7 @@ void bench_monte_carlo(int trials, FitBench& bench) {
         vertex = Vec3(0.12, -0.1, 0.45) + 0.25 * (vertex - truth.position_m);
     }
     occluder.world_from_node.translation() = Vec3(0.12, -0.1, 0.45);
-    const core::Scan scan = trial_scan();
+    const core::WallScan scan = trial_scan();
     const renderer::Scene scene(geometry, scan, {});
     renderer::RenderSettings render_settings;
     render_settings.method = renderer::Estimator::Path;

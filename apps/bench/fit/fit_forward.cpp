@@ -21,7 +21,7 @@ using core::Vec3;
 // The rectangle's forward model, without fitting anything.
 struct Bare {
     renderer::SceneGeometry geometry;
-    core::Scan scan = trial_scan();
+    core::WallScan scan = trial_scan();
     std::unique_ptr<calib::SceneModel> model;
     std::unique_ptr<calib::ForwardModel> light;
 

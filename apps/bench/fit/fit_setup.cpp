@@ -46,9 +46,10 @@ core::Capture direct_returns(std::uint64_t seed) {
     capture.time_axis = {1.0, core::opl_from_seconds(32e-12), 400};
     capture.unit = core::TransientUnit::Counts;
     capture.transient = core::Transient(commands.size(), capture.time_axis.num_bins);
-    capture.scan.sensing.positions.assign(commands.size(), Vec3::Zero());
-    capture.scan.sensing.normals.assign(commands.size(), Vec3::UnitZ());
-    capture.scan.illumination = capture.scan.sensing;
+    core::WallScan& scan = capture.scan.wall();
+    scan.sensing.positions.assign(commands.size(), Vec3::Zero());
+    scan.sensing.normals.assign(commands.size(), Vec3::UnitZ());
+    scan.illumination = scan.sensing;
     for (std::size_t p = 0; p < commands.size(); ++p) {
         core::Rng rng(seed, p, 0);
         const double opl_m = path_length(commands[p]);

@@ -53,7 +53,7 @@ renderer::Object trial_rectangle(const TrialPose& pose, int cells_x, int cells_y
     return object;
 }
 
-core::Scan trial_scan() {
+core::WallScan trial_scan() {
     constexpr int kPoints = 16;
     renderer::SceneDescription description;
     description.scan.sensing_points = {kPoints, kPoints};
@@ -115,7 +115,8 @@ core::Capture expected_light(const renderer::Object& truth) {
     forward.offset_m.assign(capture.scan.num_pairs(), 0.0);
     forward.tolerance = 1e-3;
     forward.radiance_factor = std::pow(core::kPi, -3.0);
-    calib::ForwardModel light(model, capture.scan, calib::WallMotion(capture.scan), forward);
+    const core::WallScan& scan = capture.scan.wall();
+    calib::ForwardModel light(model, scan, calib::WallMotion(scan), forward);
     calib::SceneState state = model.start();
     state.has_ambient = false;
     light.refresh(state);

@@ -30,7 +30,7 @@ struct TrialSetup {
 /// The rectangle as a mesh of cells in the plane z = 0 of its node, which is at `pose`.
 renderer::Object trial_rectangle(const TrialPose& pose, int cells_x, int cells_y);
 
-core::Scan trial_scan();
+core::WallScan trial_scan();
 core::TimeAxis trial_axis();
 inline constexpr double kTrialFwhm_ps = 94.0;  // of the response
 

@@ -53,13 +53,13 @@ core::Capture letter_t_capture(core::ScanPattern pattern) {
     description.scan.sensing_points = {kPoints, kPoints};
     core::Capture capture;
     capture.scan = renderer::make_scan(description);
-    const core::Scan& scan = capture.scan;
+    const core::WallScan& scan = capture.scan.wall();
     capture.time_axis = {0.0, 0.008, 512};
     capture.transient = core::Transient(scan.num_pairs(), capture.time_axis.num_bins);
     const std::vector<Vec3> letter = patches();
     core::parallel_for(scan.num_pairs(), [&](std::size_t pair) {
-        const Vec3& l = scan.illumination.positions[scan.illumination_index(pair)];
-        const Vec3& s = scan.sensing.positions[scan.sensing_index(pair)];
+        const Vec3& l = scan.illumination_point(pair);
+        const Vec3& s = scan.sensing_point(pair);
         const auto histogram = capture.transient.histogram(pair);
         for (const Vec3& patch : letter) {
             const double out = (patch - l).norm();

@@ -220,7 +220,7 @@ std::vector<BenchCurve> measure_curves(const RenderBenchSettings& settings,
     }
     mark_front(curves);
     figures["ray_limit_seconds"] = static_cast<double>(reference.transient.num_pairs()) *
-                                   shadow_ray_seconds(bench.scene(), bench.scan());
+                                   shadow_ray_seconds(bench.scene(), bench.scan().wall());
     figures["curves"] = core::write_value(curves);
     figures["equal_error"] = equal_errors(curves, curves.front());
     return curves;

@@ -63,7 +63,8 @@ Figures measure(Estimator method, const Sizes& sizes) {
     figures.cpu_seconds = core::cpu_seconds() - cpu_start;
     figures.elapsed_seconds = result.seconds;
     figures.peak_bytes = static_cast<double>(core::peak_rss_bytes());
-    figures.limit_seconds = static_cast<double>(result.num_rays) * shadow_ray_seconds(scene, scan);
+    figures.limit_seconds =
+        static_cast<double>(result.num_rays) * shadow_ray_seconds(scene, scan.wall());
     return figures;
 }
 

@@ -47,7 +47,7 @@ using SequenceFrames = std::vector<core::Transient>;
 constexpr double kSequenceSettlingShare = 1.0 / 6.0;
 
 bool is_integrable(const SequenceSetup& setup) {
-    return !setup.scan.camera && setup.description.render.max_bounces == 3;
+    return setup.scan.has_wall() && setup.description.render.max_bounces == 3;
 }
 
 renderer::RenderResult render_all(const SequenceSetup& setup) {
@@ -163,7 +163,7 @@ SequenceFrames reference_frames(const SequenceCase& sequence, std::uint64_t seed
         settings.target_error = 2e-3;
     } else {
         settings.method =
-            setup.scan.camera ? renderer::Estimator::Restir : renderer::Estimator::Auto;
+            setup.scan.has_wall() ? renderer::Estimator::Auto : renderer::Estimator::Restir;
         settings.restir.reuse = renderer::Reuse::None;
         settings.restir.shared_walks = 2000;
         settings.restir.walks = 16;
@@ -271,7 +271,7 @@ std::vector<SequenceCase> standard_sequences(const SequenceArguments& arguments)
 
 std::vector<SequenceMethod> standard_methods(const SequenceCase& sequence) {
     const SequenceSetup setup(sequence, {});
-    const bool is_image = setup.scan.camera.has_value();
+    const bool is_image = !setup.scan.has_wall();
     const bool is_static = sequence.is_static();
     // Good candidates leave little for reuse to add: a moving gate then wants a short memory.
     const auto cap = [&](int moving) {

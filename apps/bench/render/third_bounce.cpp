@@ -66,13 +66,13 @@ renderer::SceneGeometry random_geometry(core::Rng& rng) {
     return geometry;
 }
 
-core::Scan random_scan(core::Rng& rng, core::ScanPattern pattern) {
+core::WallScan random_scan(core::Rng& rng, core::ScanPattern pattern) {
     const int side = pattern == core::ScanPattern::Exhaustive ? 4 : 8;
     renderer::SceneDescription description;
     description.scan.pattern = {pattern};
     description.scan.sensing_points = {side, side};
     description.scan.illumination_points = {side, side};
-    core::Scan scan = renderer::make_scan(description);
+    core::WallScan scan = renderer::make_scan(description).wall();
     if (pattern == core::ScanPattern::Single) {
         const double x = rng.uniform() - 0.5;
         scan.illumination.positions = {Vec3(x, rng.uniform() - 0.5, 0.0)};
@@ -88,7 +88,7 @@ void try_targets(int number, core::Json& rows) {
     const core::ScanPattern pattern =
         kPatterns[static_cast<std::size_t>(number) % kPatterns.size()];
     core::Rng rng(0, static_cast<std::uint64_t>(number), 0);
-    const core::Scan scan = random_scan(rng, pattern);
+    const core::WallScan scan = random_scan(rng, pattern);
     const renderer::Scene scene(random_geometry(rng), scan, renderer::RelayWall{});
     const double bin_width = 0.006 + 0.02 * rng.uniform();
     const core::TimeAxis axis{0.4, bin_width, static_cast<int>(2.4 / bin_width)};
@@ -162,7 +162,7 @@ core::Json compare_bins(const core::Capture& integrated, const core::Capture& pa
 
 // Some points of a confocal scan, spread over all of them and out of step with its rows; the laser
 // point of a single scan is none of the others, those of an exhaustive one are.
-core::Scan few_points(const core::Scan& all, core::ScanPattern pattern) {
+core::WallScan few_points(const core::WallScan& all, core::ScanPattern pattern) {
     constexpr double kGolden = 0.6180339887498949;
     const auto spread = [&](std::size_t count, double phase) {
         core::WallPoints points;
@@ -175,7 +175,7 @@ core::Scan few_points(const core::Scan& all, core::ScanPattern pattern) {
         }
         return points;
     };
-    core::Scan scan = all;
+    core::WallScan scan = all;
     scan.pattern = pattern;
     scan.sensing = spread(16, 0.5);
     scan.illumination = pattern == core::ScanPattern::Confocal ? scan.sensing
@@ -189,10 +189,7 @@ core::Json compare_with_path(const std::string& path, core::ScanPattern pattern)
     constexpr double kTarget = 5e-4;
     constexpr int kSamples = 100'000;
     const BenchScene bench(path);
-    if (bench.scan().camera) {
-        throw core::Error(path, "has a camera", "must have wall points to compare estimators on");
-    }
-    const core::Scan scan = few_points(bench.scan(), pattern);
+    const core::WallScan scan = few_points(bench.scan().wall(path), pattern);
     const auto render = [&](const renderer::RenderSettings& settings) {
         return renderer::render(bench.scene(), scan, bench.axis(), settings, {}).capture;
     };
@@ -222,7 +219,8 @@ core::Json cost_of(const std::string& measurement,
     renderer::RenderSettings settings = bench.settings();
     const auto integrate = [&](double target) {
         settings.target_error = target;
-        return renderer::integrate_third_bounce(bench.scene(), bench.scan(), axis, settings, {});
+        return renderer::integrate_third_bounce(
+            bench.scene(), bench.scan().wall(), axis, settings, {});
     };
     const core::Capture reference =
         capture_of(bench.scan(), axis, integrate(kCostReferenceTarget).transient);
@@ -236,7 +234,7 @@ core::Json cost_of(const std::string& measurement,
         const renderer::ThirdBounce result = integrate(kCostTarget);
         seconds.push_back(core::cpu_seconds() - start);
         tracing_seconds.push_back(result.tracing_seconds);
-        ray_seconds.push_back(shadow_ray_seconds(bench.scene(), bench.scan()));
+        ray_seconds.push_back(shadow_ray_seconds(bench.scene(), bench.scan().wall()));
         million_rays = 1e-6 * static_cast<double>(result.num_rays);
         rel_l2 = relative_l2(capture_of(bench.scan(), axis, result.transient), reference);
     }

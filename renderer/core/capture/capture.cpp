@@ -9,29 +9,6 @@
 namespace core {
 namespace {
 
-void validate_points(const WallPoints& points, const std::string& where) {
-    if (points.size() == 0) throw Error(where, "found no point", "must have at least one");
-    require(points.normals.size() == points.size(),
-            where + " normals",
-            fmt::format("{} for {} points", points.normals.size(), points.size()),
-            "one per point");
-    if (points.grid && (*points.grid)[0] * (*points.grid)[1] != points.size()) {
-        throw Error(where + " grid",
-                    fmt::format("found {} x {}", (*points.grid)[0], (*points.grid)[1]),
-                    fmt::format("must multiply to {} points", points.size()));
-    }
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (!points.positions[i].allFinite() || !points.normals[i].allFinite()) {
-            throw Error(where, fmt::format("point {} is not finite", i), "must be finite numbers");
-        }
-        if (points.normals[i].norm() < 1e-6) {
-            throw Error(where + " normals",
-                        fmt::format("normal {} has length 0", i),
-                        "must be unit vectors");
-        }
-    }
-}
-
 void validate_histograms(const Capture& capture,
                          const Transient& transient,
                          int num_bins,
@@ -86,7 +63,7 @@ void for_each_unobserved(const Values& histogram,
 
 void validate_observed(const Capture& capture, const std::string& where) {
     if (!capture.observed) return;
-    if (capture.scan.camera) {
+    if (!capture.scan.has_observed_bins()) {
         throw Error(where + ": observed bins", "found for an image", "must be of a scan's pairs");
     }
     validate_ranges(capture, *capture.observed, where + ": observed bins");
@@ -108,53 +85,6 @@ void validate_observed(const Capture& capture, const std::string& where) {
 }
 
 }  // namespace
-
-std::array<double, 2> device_leg_range_m(const Scan& scan) {
-    std::array<double, 2> range{scan.device_legs_m(0), scan.device_legs_m(0)};
-    for (std::size_t pair = 1; pair < scan.num_pairs(); ++pair) {
-        const double leg = scan.device_legs_m(pair);
-        range = {std::min(range[0], leg), std::max(range[1], leg)};
-    }
-    return range;
-}
-
-ScanExtent scan_extent(const Scan& scan) {
-    const WallPoints& points = scan.scanned_points();
-    const Vec3& first = points.positions.front();
-    ScanExtent extent;
-    if (points.grid) {
-        const auto [nx, ny] = *points.grid;
-        const Vec3 along_x = points.positions[(nx - 1) * ny] - first;
-        const Vec3 along_y = points.positions[ny - 1] - first;
-        if (along_x.norm() > 0.0) extent.axes[0] = along_x.normalized();
-        if (along_y.norm() > 0.0) extent.axes[1] = along_y.normalized();
-    }
-    for (int i = 0; i < 2; ++i) {
-        double low = extent.axes[i].dot(first);
-        double high = low;
-        for (const Vec3& position : points.positions) {
-            low = std::min(low, extent.axes[i].dot(position));
-            high = std::max(high, extent.axes[i].dot(position));
-        }
-        extent.middle_m[i] = 0.5 * (low + high);
-        extent.size_m[i] = high - low;
-    }
-    return extent;
-}
-
-void validate(const Scan& scan, const std::string& where) {
-    if (scan.camera) {
-        validate(*scan.camera, where + ": camera");
-    } else {
-        validate_points(scan.sensing, where + ": sensing points");
-        validate_points(scan.illumination, where + ": illumination points");
-    }
-    require(
-        scan.pattern != ScanPattern::Confocal || scan.illumination.size() == scan.sensing.size(),
-        where + ": illumination points",
-        fmt::format("{}", scan.illumination.size()),
-        fmt::format("as many as the {} sensing points of a confocal scan", scan.sensing.size()));
-}
 
 void validate(const Capture& capture, const std::string& where) {
     validate(capture.time_axis, where + ": time axis");
@@ -188,7 +118,7 @@ void restrict_observed(Capture& capture, const std::vector<BinRange>& ranges) {
                 });
         }
     });
-    if (capture.scan.camera) return;
+    if (!capture.scan.has_observed_bins()) return;
     std::vector<BinRange> kept;
     for (std::size_t pair = 0; pair < ranges.size(); ++pair) {
         kept.push_back(intersection(ranges[pair], capture.observed_range(pair)));

@@ -237,9 +237,9 @@ std::vector<std::string> describe_sensor(const SensorSetup& setup) {
                     model.num_zones())};
 }
 
-Scan scan_of_zones(const SensorSetup& setup, std::size_t frame) {
+SensorScan scan_of_zones(const SensorSetup& setup, std::size_t frame) {
     const SensorFootprints footprints = make_footprints(setup, frame);
-    Scan scan;
+    SensorScan scan;
     for (const ZoneFootprint& zone : footprints.zones) {
         scan.sensing.positions.push_back(zone.center_m.value_or(setup.wall.center_m));
         scan.sensing.normals.push_back(footprints.normal);
@@ -248,7 +248,7 @@ Scan scan_of_zones(const SensorSetup& setup, std::size_t frame) {
     scan.opl_origin = OplOrigin::Device;
     scan.laser_position = footprints.laser_m;
     scan.detector_position = footprints.receiver_m;
-    scan.sensor = std::make_shared<const SensorSetup>(setup);
+    scan.setup = std::make_shared<const SensorSetup>(setup);
     return scan;
 }
 
@@ -271,7 +271,7 @@ void observe_live_zones(const SensorSetup& setup, Capture& capture) {
 }
 
 std::optional<SensorSetup> recorded_sensor(const Capture& capture) {
-    if (capture.scan.sensor) return *capture.scan.sensor;
+    if (const auto* scan = capture.scan.as<SensorScan>()) return *scan->setup;
     if (!capture.scene_info.is_object()) return std::nullopt;
     const auto found = capture.scene_info.find("sensor");
     if (found == capture.scene_info.end() || !found->is_object()) return std::nullopt;

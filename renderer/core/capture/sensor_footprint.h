@@ -13,7 +13,7 @@
 namespace core {
 
 struct Capture;
-struct Scan;
+struct SensorScan;
 
 /// Where a sensor is and looks; its position is that of the receiving lens.
 struct SensorPose {
@@ -128,7 +128,7 @@ std::vector<std::string> describe_sensor(const SensorSetup& setup);
 /// receiver. Dead zones stand at the wall's centre.
 ///
 /// throws   as make_footprints()
-Scan scan_of_zones(const SensorSetup& setup, std::size_t frame = 0);
+SensorScan scan_of_zones(const SensorSetup& setup, std::size_t frame = 0);
 
 /// States in a capture of zones which of them see the wall in no frame: these are not observed.
 ///

@@ -151,7 +151,7 @@ TEST(Page, FilmsShowEachPointsLightInTheWallsOrder) {
     const core::Json json = film_json(film, core::Transform::Identity(), arrays);
     ASSERT_EQ(json["kind"], "wall");
     const std::vector<double> values = values_of(json["values"], arrays);
-    const nlos::WallGrid grid = *nlos::derive_wall_frame(capture.scan).grid;
+    const nlos::WallGrid grid = *nlos::derive_wall_frame(capture.scan.wall()).grid;
     const std::size_t num_bins = capture.transient.num_bins() - 2;  // both ends are dark
     ASSERT_EQ(json["bins"], num_bins);
     EXPECT_DOUBLE_EQ(json["start"], capture.time_axis.bin_begin_m(1.0));
@@ -170,9 +170,9 @@ TEST(Page, FilmsShowEachPointsLightInTheWallsOrder) {
 TEST(Page, FilmsOfExhaustiveScansAreOfTheMiddleIlluminationPoint) {
     const core::Capture capture = lit_capture(core::ScanPattern::Exhaustive);
     const FilmView film = film_view(capture, "a.h5");
-    const std::size_t middle = capture.scan.illumination.size() / 2;
-    const nlos::WallGrid grid = *nlos::derive_wall_frame(capture.scan).grid;
-    const std::size_t pair = middle * capture.scan.sensing.size() + grid.point(0, 0);
+    const std::size_t middle = capture.scan.wall().illumination.size() / 2;
+    const nlos::WallGrid grid = *nlos::derive_wall_frame(capture.scan.wall()).grid;
+    const std::size_t pair = middle * capture.scan.wall().sensing.size() + grid.point(0, 0);
     EXPECT_NEAR(film.coding.decode(film.codes[0]) / double{capture.transient.histogram(pair)[1]},
                 1.0,
                 0.01);
@@ -181,17 +181,17 @@ TEST(Page, FilmsOfExhaustiveScansAreOfTheMiddleIlluminationPoint) {
 
 TEST(Page, FilmsOfScansWithMoreLitThanSensingPointsAreOfTheLitOnes) {
     core::Capture capture = lit_capture(core::ScanPattern::Exhaustive);
-    std::swap(capture.scan.sensing, capture.scan.illumination);
-    const nlos::WallGrid grid = *nlos::derive_wall_frame(capture.scan).grid;
-    const std::size_t num_sensing = capture.scan.sensing.size();
+    std::swap(capture.scan.wall().sensing, capture.scan.wall().illumination);
+    const nlos::WallGrid grid = *nlos::derive_wall_frame(capture.scan.wall()).grid;
+    const std::size_t num_sensing = capture.scan.wall().sensing.size();
     const std::size_t pair = grid.point(0, 0) * num_sensing + num_sensing / 2;
     const auto light = double{capture.transient.histogram(pair)[1]};
     FilmView film = film_view(capture, "a.h5");
     EXPECT_NEAR(film.coding.decode(film.codes[0]) / light, 1.0, 0.01);
     EXPECT_NE(film.detail.find("sensed at the middle one"), std::string::npos);
-    capture.scan.illumination.grid.reset();
+    capture.scan.wall().illumination.grid.reset();
     film = film_view(capture, "a.h5");
-    EXPECT_EQ(film.positions.size(), capture.scan.illumination.size());
+    EXPECT_EQ(film.positions.size(), capture.scan.wall().illumination.size());
 }
 
 TEST(Page, HalvedFilmsHoldTheSameLight) {

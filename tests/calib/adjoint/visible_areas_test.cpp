@@ -21,7 +21,7 @@ using test_support::random_point;
 const core::TimeAxis kAnyLength{0.0, 0.1, 100};
 
 // Areas of facets that both ends of the first pair see.
-std::vector<double> visible_areas(const OccludedMesh& shapes, const core::Scan& scan) {
+std::vector<double> visible_areas(const OccludedMesh& shapes, const core::WallScan& scan) {
     const calib::FacetTree tree(shapes.mesh);
     const auto elements = calib::cut_mesh(shapes.mesh, tree, scan, 0.02, 0.05);
     const calib::AdjointScene scene{
@@ -29,7 +29,9 @@ std::vector<double> visible_areas(const OccludedMesh& shapes, const core::Scan& 
     return calib::PairEvaluator(scene).visible_areas(0);
 }
 
-double visible_area(const OccludedMesh& shapes, const core::Scan& scan, std::size_t num_facets) {
+double visible_area(const OccludedMesh& shapes,
+                    const core::WallScan& scan,
+                    std::size_t num_facets) {
     const auto areas = visible_areas(shapes, scan);
     return std::accumulate(
         areas.begin(), areas.begin() + static_cast<std::ptrdiff_t>(num_facets), 0.0);
@@ -43,7 +45,7 @@ OccludedMesh shapes_of(const std::vector<Parallelogram>& shapes) {
 
 const Parallelogram kSheet{{-0.5, -0.5, 1.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
 
-core::Scan one_point(const Vec3& position) {
+core::WallScan one_point(const Vec3& position) {
     return test_support::confocal_scan({position});
 }
 
@@ -56,9 +58,9 @@ TEST(VisibleAreas, AShadowGrowsWithTheDistance) {
 
 TEST(VisibleAreas, BothEndsCastShadows) {
     const auto shapes = shapes_of({kSheet, {{-0.05, -0.1, 0.5}, {0.1, 0, 0}, {0, 0.2, 0}}});
-    const core::Scan apart = test_support::single_scan(Vec3(-0.15, 0, 0), {Vec3(0.15, 0, 0)});
+    const core::WallScan apart = test_support::single_scan(Vec3(-0.15, 0, 0), {Vec3(0.15, 0, 0)});
     EXPECT_NEAR(visible_area(shapes, apart, 2), 1.0 - 2.0 * 0.2 * 0.4, 1e-12);
-    const core::Scan close = test_support::single_scan(Vec3(-0.05, 0, 0), {Vec3(0.05, 0, 0)});
+    const core::WallScan close = test_support::single_scan(Vec3(-0.05, 0, 0), {Vec3(0.05, 0, 0)});
     EXPECT_NEAR(visible_area(shapes, close, 2), 1.0 - 0.3 * 0.4, 1e-12);
 }
 
@@ -150,7 +152,7 @@ TEST(VisibleAreas, AgreeWithRays) {
         core::Rng rng(test_support::seed_of("rays"), number, 0);
         const OccludedMesh shapes = test_support::random_occluded_mesh(rng);
         const auto point = [&] { return Vec3(rng.uniform() - 0.5, rng.uniform() - 0.5, 0.0); };
-        const core::Scan scan = test_support::single_scan(point(), {point()});
+        const core::WallScan scan = test_support::single_scan(point(), {point()});
         const auto areas = visible_areas(shapes, scan);
         for (std::size_t f = 0; f < areas.size(); ++f) {
             const auto& [a, b, c] = shapes.mesh.triangles[f];
@@ -180,7 +182,7 @@ TEST(VisibleAreas, AgreeWithRays) {
 TEST(PairEvaluator, PullsTheSameWithAndWithoutWhatItSaw) {
     core::Rng rng(test_support::seed_of("seen"), 0, 0);
     const OccludedMesh shapes = test_support::random_occluded_mesh(rng);
-    const core::Scan scan = test_support::single_scan(Vec3(-0.2, 0, 0), {Vec3(0.15, 0, 0)});
+    const core::WallScan scan = test_support::single_scan(Vec3(-0.2, 0, 0), {Vec3(0.15, 0, 0)});
     const calib::FacetTree tree(shapes.mesh);
     const auto elements = calib::cut_mesh(shapes.mesh, tree, scan, 0.02, 0.01);
     const calib::AdjointScene scene{

@@ -73,7 +73,7 @@ double norm(const std::vector<double>& values) {
     return std::sqrt(sum);
 }
 
-void expect_gradients_match_differences(const core::Scan& scan, ForwardSettings settings) {
+void expect_gradients_match_differences(const core::WallScan& scan, ForwardSettings settings) {
     const SceneModel model(two_objects(), all_free(), true);
     const SceneState state = general_state(model);
     ForwardModel light(model, scan, calib::WallMotion(scan), std::move(settings));
@@ -106,19 +106,19 @@ void expect_gradients_match_differences(const core::Scan& scan, ForwardSettings 
 }
 
 TEST(ForwardModel, GradientsMatchFiniteDifferencesOnConfocalScans) {
-    const core::Scan scan = test_support::confocal_grid(4);
+    const core::WallScan scan = test_support::confocal_grid(4);
     expect_gradients_match_differences(scan, forward_settings(scan.num_pairs()));
 }
 
 TEST(ForwardModel, GradientsMatchFiniteDifferencesOnExhaustiveScans) {
-    const core::Scan scan = test_support::exhaustive_scan(
+    const core::WallScan scan = test_support::exhaustive_scan(
         {Vec3(0.1, 0.0, 0.0), Vec3(-0.3, 0.2, 0.0)}, {Vec3(-0.2, -0.1, 0.0), Vec3(0.3, 0.3, 0.0)});
     expect_gradients_match_differences(scan, forward_settings(scan.num_pairs()));
 }
 
 TEST(ForwardModel, GradientsMatchFiniteDifferencesThroughAMeasuredResponse) {
-    const core::Scan scan = test_support::single_scan(Vec3(0.1, 0.0, 0.0),
-                                                      {Vec3(-0.2, -0.1, 0.0), Vec3(0.3, 0.3, 0.0)});
+    const core::WallScan scan = test_support::single_scan(
+        Vec3(0.1, 0.0, 0.0), {Vec3(-0.2, -0.1, 0.0), Vec3(0.3, 0.3, 0.0)});
     ForwardSettings settings = forward_settings(scan.num_pairs());
     settings.measured = core::ExponentialGaussianResponse{0.01, 0.015};
     expect_gradients_match_differences(scan, settings);
@@ -132,7 +132,7 @@ TEST(ForwardModel, AgreesWithExactArcs) {
     free.free.objects = {{"target", true, false, false, false, false}};
     free.free.ambient = false;
     const SceneModel model(geometry, free, false);
-    const core::Scan scan = test_support::confocal_grid(3);
+    const core::WallScan scan = test_support::confocal_grid(3);
     ForwardSettings settings = forward_settings(scan.num_pairs());
     settings.response_share = 1.0;
     settings.offset_m.assign(scan.num_pairs(), 0.0);
@@ -177,7 +177,7 @@ double difference_from_renderer(const renderer::SceneGeometry& geometry, double 
     free.free.objects = {{"front", true, false, false, false, false}};
     free.free.ambient = false;
     const SceneModel model(geometry, free, false);
-    const core::Scan scan = test_support::confocal_grid(8);
+    const core::WallScan scan = test_support::confocal_grid(8);
     ForwardSettings settings = forward_settings(scan.num_pairs());
     settings.sigma_m = 0.0;
     settings.offset_m.assign(scan.num_pairs(), 0.0);

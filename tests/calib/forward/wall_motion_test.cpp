@@ -15,7 +15,7 @@ using calib::WallMotion;
 using core::Vec3;
 
 // Two levels of a stepped wall, which are parallel to it.
-core::Scan stepped_scan() {
+core::WallScan stepped_scan() {
     std::vector<Vec3> positions;
     for (int i = 0; i < 5; ++i) {
         for (int j = 0; j < 5; ++j) {
@@ -34,7 +34,7 @@ calib::SceneState bowed_state() {
 
 TEST(WallMotion, NormalsAreThoseOfTheMovedSurface) {
     constexpr double kStep = 1e-6;
-    const core::Scan scan = stepped_scan();
+    const core::WallScan scan = stepped_scan();
     const WallMotion motion(scan);
     const calib::SceneState state = bowed_state();
     const auto position = [&](const Vec3& p) -> Vec3 {
@@ -51,7 +51,7 @@ TEST(WallMotion, NormalsAreThoseOfTheMovedSurface) {
 }
 
 TEST(WallMotion, PointsGrowAboutTheCentreAndRiseByTheBow) {
-    const core::Scan scan =
+    const core::WallScan scan =
         test_support::confocal_scan({{0.9, 1.0, 0.0}, {1.0, 1.0, 0.0}, {1.1, 1.0, 0.0}});
     const std::vector<MovedWallPoint> moved = WallMotion(scan).moved(scan.sensing, bowed_state());
     const double reach = 0.1 * std::exp(0.1);

@@ -290,8 +290,8 @@ TEST(Compare, OrderOfWallPointsDoesNotMatter) {
     for (const auto pattern : {core::ScanPattern::Confocal, core::ScanPattern::Exhaustive}) {
         const core::Capture reference = test_support::example_capture(pattern);
         core::Capture turned = reference;
-        std::ranges::reverse(turned.scan.sensing.positions);
-        std::ranges::reverse(turned.scan.illumination.positions);
+        std::ranges::reverse(turned.scan.wall().sensing.positions);
+        std::ranges::reverse(turned.scan.wall().illumination.positions);
         // With both lists reversed, pairs run backwards, too.
         const std::size_t last = turned.transient.num_pairs() - 1;
         for (std::size_t pair = 0; pair <= last; ++pair) {
@@ -304,7 +304,7 @@ TEST(Compare, OrderOfWallPointsDoesNotMatter) {
         ranges[1] = {2, 3};
         core::restrict_observed(gated, ranges);
         EXPECT_EQ(compare_captures(gated, reference).rel_l2.value(), 0.0);
-        for (core::Vec3& point : turned.scan.sensing.positions) point.x() += 0.01;
+        for (core::Vec3& point : turned.scan.wall().sensing.positions) point.x() += 0.01;
         EXPECT_GT(compare_captures(turned, reference).rel_l2.value(), 0.0);
     }
 }
@@ -313,12 +313,12 @@ TEST(Compare, CapturesOfDifferentScansAreNamed) {
     const core::Capture reference = test_support::example_capture(core::ScanPattern::Confocal);
     EXPECT_TRUE(comparison_warnings(reference, reference).empty());
     core::Capture other = reference;
-    for (core::Vec3& point : other.scan.sensing.positions) point.x() += 0.03;
+    for (core::Vec3& point : other.scan.wall().sensing.positions) point.x() += 0.03;
     const auto moved = comparison_warnings(other, reference);
     ASSERT_FALSE(moved.empty());
     EXPECT_NE(moved[0].find("up to 0.03 m"), std::string::npos) << moved[0];
     other = reference;
-    other.scan.pattern = core::ScanPattern::Single;
+    other.scan.wall().pattern = core::ScanPattern::Single;
     ASSERT_EQ(comparison_warnings(other, reference).size(), 1U);
     EXPECT_NE(comparison_warnings(other, reference)[0].find("single against confocal"),
               std::string::npos);

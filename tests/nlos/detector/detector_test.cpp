@@ -24,8 +24,8 @@ constexpr double kLevel = 0.001;
 /// `pairs` equal histograms with two peaks on some background.
 core::Capture repeated_capture(std::size_t pairs, int bins) {
     core::Capture capture;
-    capture.scan.sensing = test_support::as_list(test_support::example_grid(pairs, 1));
-    capture.scan.illumination = capture.scan.sensing;
+    capture.scan.wall().sensing = test_support::as_list(test_support::example_grid(pairs, 1));
+    capture.scan.wall().illumination = capture.scan.wall().sensing;
     capture.time_axis = {0.0, 0.008, bins};
     capture.transient = core::Transient(pairs, bins);
     for (std::size_t pair = 0; pair < pairs; ++pair) {

@@ -27,7 +27,7 @@ TEST(CaptureAdjustment, WithoutSettingsNothingChanges) {
     const Capture capture = example_capture(ScanPattern::Exhaustive);
     const Capture same = adjusted(capture, {});
     EXPECT_TRUE(std::ranges::equal(same.transient.values(), capture.transient.values()));
-    EXPECT_EQ(same.scan.sensing.positions, capture.scan.sensing.positions);
+    EXPECT_EQ(same.scan.wall().sensing.positions, capture.scan.wall().sensing.positions);
     EXPECT_EQ(same.notes, capture.notes);
 }
 
@@ -51,42 +51,43 @@ TEST(CaptureAdjustment, WallSizeStretchesAroundTheMiddle) {
     settings.wall_size_m = {0.4, 0.3};  // from 0.2 and 0.1
     const Capture capture = example_capture(ScanPattern::Confocal);
     const Capture wider = adjusted(capture, settings);
-    const core::ScanExtent extent = core::scan_extent(wider.scan);
+    const core::ScanExtent extent = core::scan_extent(wider.scan.wall());
     EXPECT_NEAR(extent.size_m[0], 0.4, 1e-12);
     EXPECT_NEAR(extent.size_m[1], 0.3, 1e-12);
-    EXPECT_LT((wider.scan.sensing.positions[0] - Vec3(-0.2, 0.1, 0.0)).norm(), 1e-12);
-    EXPECT_EQ(wider.scan.sensing.positions, wider.scan.illumination.positions);
-    EXPECT_EQ(wider.scan.sensing.grid, capture.scan.sensing.grid);
+    EXPECT_LT((wider.scan.wall().sensing.positions[0] - Vec3(-0.2, 0.1, 0.0)).norm(), 1e-12);
+    EXPECT_EQ(wider.scan.wall().sensing.positions, wider.scan.wall().illumination.positions);
+    EXPECT_EQ(wider.scan.wall().sensing.grid, capture.scan.wall().sensing.grid);
 }
 
 TEST(CaptureAdjustment, WallSizeFollowsATurnedGridAndLeavesALoneSpot) {
     Capture capture = example_capture(ScanPattern::Single);
     const core::Transform turn(Eigen::AngleAxisd(0.7, Vec3(1.0, 2.0, -1.0).normalized()));
-    for (Vec3& position : capture.scan.sensing.positions) position = turn * position;
+    for (Vec3& position : capture.scan.wall().sensing.positions) position = turn * position;
     CaptureReadSettings settings;
     settings.wall_size_m = {0.4, 0.1};
     const Capture wider = adjusted(capture, settings);
-    EXPECT_LT((wider.scan.sensing.positions[0] - turn * Vec3(-0.2, 0.2, 0.0)).norm(), 1e-12);
-    EXPECT_LT((wider.scan.sensing.positions[5] - turn * Vec3(0.2, 0.3, 0.0)).norm(), 1e-12);
-    EXPECT_EQ(wider.scan.illumination.positions, capture.scan.illumination.positions);
+    EXPECT_LT((wider.scan.wall().sensing.positions[0] - turn * Vec3(-0.2, 0.2, 0.0)).norm(), 1e-12);
+    EXPECT_LT((wider.scan.wall().sensing.positions[5] - turn * Vec3(0.2, 0.3, 0.0)).norm(), 1e-12);
+    EXPECT_EQ(wider.scan.wall().illumination.positions, capture.scan.wall().illumination.positions);
 }
 
 TEST(CaptureAdjustment, WallSizeStretchesBothListsOfAnExhaustiveScanAlike) {
     CaptureReadSettings settings;
     settings.wall_size_m = {0.4, 0.2};  // twice as large around (0, 0.25)
     const Capture wider = adjusted(example_capture(ScanPattern::Exhaustive), settings);
-    EXPECT_LT((wider.scan.illumination.positions[0] - Vec3(0.6, 0.15, 0.0)).norm(), 1e-12);
-    EXPECT_LT((wider.scan.illumination.positions[3] - Vec3(0.8, 0.35, 0.0)).norm(), 1e-12);
+    EXPECT_LT((wider.scan.wall().illumination.positions[0] - Vec3(0.6, 0.15, 0.0)).norm(), 1e-12);
+    EXPECT_LT((wider.scan.wall().illumination.positions[3] - Vec3(0.8, 0.35, 0.0)).norm(), 1e-12);
 }
 
 TEST(CaptureAdjustment, AnAxisWithoutExtentStays) {
     Capture capture = example_capture(ScanPattern::Confocal);
-    for (core::WallPoints* points : {&capture.scan.sensing, &capture.scan.illumination}) {
+    for (core::WallPoints* points :
+         {&capture.scan.wall().sensing, &capture.scan.wall().illumination}) {
         *points = test_support::example_grid(6, 1);
     }
     CaptureReadSettings settings;
     settings.wall_size_m = {1.0, 7.0};
-    const core::ScanExtent extent = core::scan_extent(adjusted(capture, settings).scan);
+    const core::ScanExtent extent = core::scan_extent(adjusted(capture, settings).scan.wall());
     EXPECT_NEAR(extent.size_m[0], 1.0, 1e-12);
     EXPECT_EQ(extent.size_m[1], 0.0);
 }
@@ -98,7 +99,7 @@ TEST(CaptureAdjustment, FlipsMoveHistogramsToTheOtherSide) {
     const Capture in_x = adjusted(capture, settings);
     EXPECT_EQ(histogram_of(in_x.transient, 0), histogram_of(capture.transient, 4));
     EXPECT_EQ(histogram_of(in_x.transient, 3), histogram_of(capture.transient, 3));
-    EXPECT_EQ(in_x.scan.sensing.positions, capture.scan.sensing.positions);
+    EXPECT_EQ(in_x.scan.sensing.positions, capture.scan.wall().sensing.positions);
     settings.flip_x = false;
     settings.flip_y = true;
     const Capture in_y = adjusted(capture, settings);
@@ -177,14 +178,14 @@ TEST(CaptureAdjustment, OriginAndUnitAreReplaced) {
     settings.opl_origin = core::OplOrigin::Device;
     settings.unit = core::TransientUnit::Radiance;
     const Capture changed = adjusted(capture, settings);
-    EXPECT_EQ(changed.scan.opl_origin, core::OplOrigin::Device);
+    EXPECT_EQ(changed.scan.opl_origin(), core::OplOrigin::Device);
     EXPECT_EQ(changed.unit, core::TransientUnit::Radiance);
     EXPECT_FALSE(changed.counts_per_radiance);
 }
 
 TEST(CaptureAdjustment, RefusesWhatTheCaptureCannotDo) {
     Capture list = example_capture(ScanPattern::Confocal);
-    for (core::WallPoints* points : {&list.scan.sensing, &list.scan.illumination}) {
+    for (core::WallPoints* points : {&list.scan.wall().sensing, &list.scan.wall().illumination}) {
         *points = test_support::as_list(*points);
     }
     CaptureReadSettings flip;

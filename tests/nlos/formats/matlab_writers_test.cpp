@@ -114,7 +114,7 @@ TEST(StanfordFkWriter, RefusesWhatIsNoSquare) {
     expect(example_capture(ScanPattern::Confocal), "square");
     expect(test_support::example_image(), "camera");
     Capture capture = example_square();
-    capture.scan.opl_origin = core::OplOrigin::Device;
+    capture.scan.wall().opl_origin = core::OplOrigin::Device;
     expect(capture, "device legs");
 }
 
@@ -188,8 +188,8 @@ TEST(ConvNlosWriter, TheWallStandsAtTheTargetDistance) {
     EXPECT_NEAR(data.values("target_dist")[0], distance, 1e-15);
     const auto l = data.values("l");
     for (std::size_t i = 0; i < 6; ++i) {
-        EXPECT_EQ(l[i], -capture.scan.sensing.positions[i].x());
-        EXPECT_EQ(l[i + 6], capture.scan.sensing.positions[i].y());
+        EXPECT_EQ(l[i], -capture.scan.wall().sensing.positions[i].x());
+        EXPECT_EQ(l[i + 6], capture.scan.wall().sensing.positions[i].y());
         EXPECT_EQ(l[i + 12], data.values("target_dist")[0]);
     }
 }
@@ -209,7 +209,7 @@ TEST(ConvNlosWriter, TheirWorldIsNoMirrorImageOfOurs) {
     std::array<core::Vec3, 3> theirs;
     const std::array<std::size_t, 3> corners{0, 2, 1};  // of 3 x 2 points: along x, along y
     for (std::size_t i = 0; i < 3; ++i) {
-        ours[i] = capture.scan.sensing.positions[corners[i]];
+        ours[i] = capture.scan.wall().sensing.positions[corners[i]];
         theirs[i] = {l[corners[i]], l[corners[i] + 6], l[corners[i] + 12]};
     }
     const double right = handedness(ours, core::Vec3::UnitZ());
@@ -236,7 +236,7 @@ TEST(ConvNlosWriter, OtherTransientsAreLitThenSeenThenTime) {
         const auto losses = write_as("conv-nlos", folder.file("a.mat"), capture);
         EXPECT_TRUE(std::ranges::count(losses, "grids become lists of points"));
         const NlosData data(folder.file("a.mat"));
-        const std::size_t lit = capture.scan.illumination.size();
+        const std::size_t lit = capture.scan.wall().illumination.size();
         EXPECT_EQ(data.shape("transient"), (std::vector<std::size_t>{lit, 6, 5}));
         EXPECT_EQ(data.values("is_confocal"), std::vector<double>{0.0});
         EXPECT_EQ(data.shape("l"), (std::vector<std::size_t>{lit, 3}));
@@ -258,38 +258,42 @@ TEST(ConvNlosWriter, RefusesWhatIsNotOnTheWallAtZero) {
     };
     expect(test_support::example_image(), "camera");
     Capture capture = example_capture(ScanPattern::Exhaustive);
-    capture.scan.opl_origin = core::OplOrigin::Device;
+    capture.scan.wall().opl_origin = core::OplOrigin::Device;
     expect(capture, "device legs");
     capture = example_capture(ScanPattern::Exhaustive);
-    capture.scan.sensing.positions[4].z() = 0.01;
+    capture.scan.wall().sensing.positions[4].z() = 0.01;
     expect(capture, "point 4");
     capture = example_capture(ScanPattern::Exhaustive);
-    capture.scan.illumination.normals[2] = -core::Vec3::UnitZ();
+    capture.scan.wall().illumination.normals[2] = -core::Vec3::UnitZ();
     expect(capture, "point 2");
 }
 
 /// Expects the same histograms at the same points, in whatever order.
 void expect_same_pairs(const Capture& read, const Capture& written) {
-    ASSERT_EQ(read.scan.pattern, written.scan.pattern);
+    ASSERT_EQ(read.scan.wall().pattern, written.scan.wall().pattern);
     ASSERT_EQ(read.scan.num_pairs(), written.scan.num_pairs());
-    EXPECT_EQ(read.scan.opl_origin, core::OplOrigin::RelayWall);
+    EXPECT_EQ(read.scan.wall().opl_origin, core::OplOrigin::RelayWall);
     const auto distance = [](const core::WallPoints& a, std::size_t i, const core::Vec3& b) {
         return (a.positions[i] - b).norm();
     };
     for (std::size_t pair = 0; pair < written.scan.num_pairs(); ++pair) {
-        const core::Scan& scan = written.scan;
+        const core::WallScan& scan = written.scan.wall();
         const core::Vec3& lit = scan.illumination.positions[scan.illumination_index(pair)];
         const core::Vec3& seen = scan.sensing.positions[scan.sensing_index(pair)];
         std::size_t same = 0;
         while (same < scan.num_pairs() &&
-               (distance(read.scan.illumination, read.scan.illumination_index(same), lit) > 1e-6 ||
-                distance(read.scan.sensing, read.scan.sensing_index(same), seen) > 1e-6)) {
+               (distance(read.scan.wall().illumination,
+                         read.scan.wall().illumination_index(same),
+                         lit) > 1e-6 ||
+                distance(read.scan.wall().sensing, read.scan.wall().sensing_index(same), seen) >
+                    1e-6)) {
             ++same;
         }
         ASSERT_LT(same, scan.num_pairs()) << "pair " << pair << " is missing";
         EXPECT_TRUE(
             std::ranges::equal(read.transient.histogram(same), written.transient.histogram(pair)));
-        EXPECT_EQ(read.scan.sensing.normals[read.scan.sensing_index(same)], core::Vec3::UnitZ());
+        EXPECT_EQ(read.scan.wall().sensing.normals[read.scan.wall().sensing_index(same)],
+                  core::Vec3::UnitZ());
     }
 }
 

@@ -27,12 +27,13 @@ Capture write_and_read(const Capture& capture) {
 /// A capture with all that a file holds, at points that single precision does not have.
 Capture capture_with_extras(ScanPattern pattern) {
     Capture capture = example_capture(pattern);
-    for (core::WallPoints* points : {&capture.scan.sensing, &capture.scan.illumination}) {
+    for (core::WallPoints* points :
+         {&capture.scan.wall().sensing, &capture.scan.wall().illumination}) {
         for (core::Vec3& position : points->positions) position *= 1.0 / 3.0;
     }
-    capture.scan.opl_origin = core::OplOrigin::Device;
-    capture.scan.laser_position = {-0.5, 0.1, 1.0 / 3.0};
-    capture.scan.detector_position = {0.7, 0.125, 1.0};
+    capture.scan.wall().opl_origin = core::OplOrigin::Device;
+    capture.scan.wall().laser_position = {-0.5, 0.1, 1.0 / 3.0};
+    capture.scan.wall().detector_position = {0.7, 0.125, 1.0};
     capture.time_axis.opl_start_m = -0.1234567890123;
     capture.time_axis.bin_width_m = 0.00799446554;
     capture.unit = core::TransientUnit::Counts;
@@ -56,10 +57,10 @@ void expect_bit_for_bit(const core::WallPoints& a, const core::WallPoints& b) {
 
 void expect_same_from_npz(const Capture& a, const Capture& b) {
     expect_same(a, b);
-    expect_bit_for_bit(a.scan.sensing, b.scan.sensing);
-    expect_bit_for_bit(a.scan.illumination, b.scan.illumination);
-    EXPECT_EQ(a.scan.laser_position, b.scan.laser_position);
-    EXPECT_EQ(a.scan.detector_position, b.scan.detector_position);
+    expect_bit_for_bit(a.scan.wall().sensing, b.scan.wall().sensing);
+    expect_bit_for_bit(a.scan.wall().illumination, b.scan.wall().illumination);
+    EXPECT_EQ(a.scan.wall().laser_position, b.scan.wall().laser_position);
+    EXPECT_EQ(a.scan.wall().detector_position, b.scan.wall().detector_position);
     EXPECT_EQ(a.counts_per_radiance, b.counts_per_radiance);
     EXPECT_EQ(a.observed, b.observed);
     EXPECT_EQ(a.orders, b.orders);
@@ -81,8 +82,8 @@ TEST(NpzCapture, EverythingSurvivesTheRoundTripBitForBit) {
         const Capture read = write_and_read(capture);
         EXPECT_TRUE(read.notes.empty());
         expect_same_from_npz(read, capture);
-        capture.scan.sensing = test_support::as_list(capture.scan.sensing);
-        capture.scan.illumination = test_support::as_list(capture.scan.illumination);
+        capture.scan.wall().sensing = test_support::as_list(capture.scan.wall().sensing);
+        capture.scan.wall().illumination = test_support::as_list(capture.scan.wall().illumination);
         expect_same_from_npz(write_and_read(capture), capture);
     }
 }
@@ -90,8 +91,8 @@ TEST(NpzCapture, EverythingSurvivesTheRoundTripBitForBit) {
 TEST(NpzCapture, ImagesSurviveTheRoundTrip) {
     const Capture image = test_support::example_image();
     const Capture read = write_and_read(image);
-    ASSERT_TRUE(read.scan.camera);
-    EXPECT_EQ(core::write_value(*read.scan.camera), core::write_value(*image.scan.camera));
+    ASSERT_FALSE(read.scan.has_wall());
+    EXPECT_EQ(test_support::camera_json(read), test_support::camera_json(image));
     EXPECT_TRUE(std::ranges::equal(read.transient.values(), image.transient.values()));
 }
 
@@ -115,10 +116,10 @@ TEST(NpzCapture, WhatIsMissingIsAssumedAndSaid) {
     write_plain(file);
     file.finish();
     const Capture capture = read_capture(folder.file("a.npz"));
-    EXPECT_EQ(capture.scan.pattern, ScanPattern::Confocal);
-    EXPECT_EQ(capture.scan.opl_origin, core::OplOrigin::RelayWall);
+    EXPECT_EQ(capture.scan.wall().pattern, ScanPattern::Confocal);
+    EXPECT_EQ(capture.scan.wall().opl_origin, core::OplOrigin::RelayWall);
     EXPECT_EQ(capture.transient.histogram(1)[3], 3.0F);
-    EXPECT_EQ(capture.scan.sensing.normals[1], core::Vec3::UnitZ());
+    EXPECT_EQ(capture.scan.wall().sensing.normals[1], core::Vec3::UnitZ());
     std::string notes;
     for (const std::string& note : capture.notes) notes += note + "\n";
     for (const char* name : {"unit", "t_start", "sensor_grid_normals", "device legs"}) {

@@ -111,8 +111,8 @@ TEST(NpzWriter, HistogramsStandWithTimeSlowest) {
         EXPECT_EQ(members["H"].dictionary, dictionary("<f4", shape));
         EXPECT_EQ(members["H"].values<float>(), time_slowest(capture.transient));
         EXPECT_EQ(members["pattern"].text(), enum_name(pattern));
-        capture.scan.sensing = test_support::as_list(capture.scan.sensing);
-        capture.scan.illumination = test_support::as_list(capture.scan.illumination);
+        capture.scan.wall().sensing = test_support::as_list(capture.scan.wall().sensing);
+        capture.scan.wall().illumination = test_support::as_list(capture.scan.wall().illumination);
         members = write_and_unzip(capture);
         EXPECT_EQ(members["H"].dictionary, dictionary("<f4", lists.at(pattern)));
         EXPECT_EQ(members["H"].values<float>(), time_slowest(capture.transient));
@@ -121,9 +121,9 @@ TEST(NpzWriter, HistogramsStandWithTimeSlowest) {
 
 TEST(NpzWriter, PointsAndAxisKeepEveryBit) {
     Capture capture = example_capture(ScanPattern::Single);
-    capture.scan.sensing.positions[4] = {0.1 + 1e-13, -1.0 / 3.0, 2e-9};
-    capture.scan.laser_position = {0.1, 0.2, 0.3};
-    capture.scan.opl_origin = core::OplOrigin::Device;
+    capture.scan.wall().sensing.positions[4] = {0.1 + 1e-13, -1.0 / 3.0, 2e-9};
+    capture.scan.wall().laser_position = {0.1, 0.2, 0.3};
+    capture.scan.wall().opl_origin = core::OplOrigin::Device;
     capture.time_axis.opl_start_m = -0.1234567890123;
     capture.time_axis.bin_width_m = 0.00799446554;
     const auto members = write_and_unzip(capture);
@@ -134,8 +134,8 @@ TEST(NpzWriter, PointsAndAxisKeepEveryBit) {
     for (std::size_t i = 0; i < 6; ++i) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto k = static_cast<Eigen::Index>(axis);
-            EXPECT_EQ(points[3 * i + axis], capture.scan.sensing.positions[i][k]);
-            EXPECT_EQ(normals[3 * i + axis], capture.scan.sensing.normals[i][k]);
+            EXPECT_EQ(points[3 * i + axis], capture.scan.wall().sensing.positions[i][k]);
+            EXPECT_EQ(normals[3 * i + axis], capture.scan.wall().sensing.normals[i][k]);
         }
     }
     EXPECT_EQ(members.at("laser_xyz").values<double>(), (std::vector<double>{0.1, 0.2, 0.3}));
@@ -201,7 +201,7 @@ TEST(NpzWriter, ImagesHaveNoGridsAndTheirCameraInSceneInfo) {
 
 TEST(NpzWriter, LargeArraysAreWrittenInPieces) {
     Capture capture = example_capture(ScanPattern::Single);
-    capture.scan.sensing = test_support::example_grid(40, 30);
+    capture.scan.wall().sensing = test_support::example_grid(40, 30);
     capture.time_axis.num_bins = 1000;  // 1.2 million values
     capture.transient = core::Transient(1200, 1000);
     float next = 0.0F;

@@ -40,8 +40,8 @@ inline void write_old_hdf5(const std::string& path, const core::Capture& capture
         }
         write(name, {points.size(), 3}, values.data());
     };
-    write_points("sensor_grid_xyz", capture.scan.sensing);
-    write_points("laser_grid_xyz", capture.scan.illumination);
+    write_points("sensor_grid_xyz", capture.scan.wall().sensing);
+    write_points("laser_grid_xyz", capture.scan.wall().illumination);
     const auto bins = static_cast<std::size_t>(capture.time_axis.num_bins);
     std::vector<float> h(capture.transient.values().size());
     for (std::size_t pair = 0; pair < capture.transient.num_pairs(); ++pair) {
@@ -50,10 +50,10 @@ inline void write_old_hdf5(const std::string& path, const core::Capture& capture
         }
     }
     std::vector<hsize_t> shape{bins};
-    if (capture.scan.pattern == core::ScanPattern::Exhaustive) {
-        shape.push_back(capture.scan.illumination.size());
+    if (capture.scan.wall().pattern == core::ScanPattern::Exhaustive) {
+        shape.push_back(capture.scan.wall().illumination.size());
     }
-    shape.push_back(capture.scan.sensing.size());
+    shape.push_back(capture.scan.wall().sensing.size());
     write("H", shape, h.data());
     const auto width = static_cast<float>(capture.time_axis.bin_width_m);
     write("delta_t", {1}, &width);

@@ -24,12 +24,15 @@ inline void expect_same_points(const core::WallPoints& a, const core::WallPoints
 }
 
 inline void expect_same(const core::Capture& a, const core::Capture& b) {
-    EXPECT_EQ(a.scan.pattern, b.scan.pattern);
-    EXPECT_EQ(a.scan.opl_origin, b.scan.opl_origin);
-    EXPECT_LT((a.scan.laser_position - b.scan.laser_position).norm(), 1e-7);
-    EXPECT_LT((a.scan.detector_position - b.scan.detector_position).norm(), 1e-7);
-    expect_same_points(a.scan.sensing, b.scan.sensing);
-    expect_same_points(a.scan.illumination, b.scan.illumination);
+    ASSERT_EQ(a.scan.has_wall(), b.scan.has_wall());
+    EXPECT_EQ(a.scan.pattern(), b.scan.pattern());
+    EXPECT_EQ(a.scan.opl_origin(), b.scan.opl_origin());
+    EXPECT_LT((a.scan.devices().laser - b.scan.devices().laser).norm(), 1e-7);
+    EXPECT_LT((a.scan.devices().detector - b.scan.devices().detector).norm(), 1e-7);
+    if (a.scan.has_wall()) {
+        expect_same_points(a.scan.wall().sensing, b.scan.wall().sensing);
+        expect_same_points(a.scan.wall().illumination, b.scan.wall().illumination);
+    }
     EXPECT_EQ(a.time_axis.opl_start_m, b.time_axis.opl_start_m);
     EXPECT_EQ(a.time_axis.bin_width_m, b.time_axis.bin_width_m);
     ASSERT_EQ(a.transient.num_pairs(), b.transient.num_pairs());

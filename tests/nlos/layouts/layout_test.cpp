@@ -102,7 +102,8 @@ TEST(Layouts, AxesMayStandInAnyOrder) {
     do {
         const LaidOut example(axes);
         const core::Capture capture = example.read();
-        EXPECT_EQ(capture.scan.sensing.grid, (std::array<std::size_t, 2>{kCubeColumns, kCubeRows}));
+        EXPECT_EQ(capture.scan.wall().sensing.grid,
+                  (std::array<std::size_t, 2>{kCubeColumns, kCubeRows}));
         for (std::size_t x = 0; x < kCubeColumns; ++x) {
             for (std::size_t y = 0; y < kCubeRows; ++y) {
                 const std::size_t pair = x * kCubeRows + y;
@@ -111,7 +112,7 @@ TEST(Layouts, AxesMayStandInAnyOrder) {
                 }
                 const core::Vec3 place(
                     -0.5 + static_cast<double>(x), 1.0 - static_cast<double>(y), 0.0);
-                EXPECT_LT((capture.scan.sensing.positions[pair] - place).norm(), 1e-12);
+                EXPECT_LT((capture.scan.wall().sensing.positions[pair] - place).norm(), 1e-12);
             }
         }
     } while (std::next_permutation(axes.begin(), axes.end()));
@@ -317,7 +318,7 @@ TEST(Layouts, AnUnknownFileIsDescribedAndItsGuessReads) {
     const core::Capture capture = read_capture(file, settings);
     EXPECT_NEAR(capture.time_axis.bin_width_m, 16e-12 * 299792458.0, 1e-12);
     EXPECT_EQ(capture.scan.num_pairs(), kSide * kSide);
-    EXPECT_NEAR(capture.scan.sensing.positions.back().x(), 0.35, 1e-12);
+    EXPECT_NEAR(capture.scan.wall().sensing.positions.back().x(), 0.35, 1e-12);
 }
 
 TEST(Layouts, NormalsThatAreNotThereFollowFromThePoints) {

@@ -69,16 +69,19 @@ std::vector<Row> one_detector() {
 
 TEST(PointListCapture, OneDetectorIsAnExhaustiveScanWithOneSensingPoint) {
     const core::Capture capture = PointLists(one_detector()).read();
-    EXPECT_EQ(capture.scan.pattern, core::ScanPattern::Exhaustive);
-    EXPECT_EQ(capture.scan.illumination.grid, (std::array<std::size_t, 2>{2, 3}));
-    ASSERT_EQ(capture.scan.sensing.size(), 1U);
-    EXPECT_NEAR((capture.scan.sensing.positions[0] - core::Vec3(0.07, 0.07, 0)).norm(), 0.0, 1e-12);
+    EXPECT_EQ(capture.scan.wall().pattern, core::ScanPattern::Exhaustive);
+    EXPECT_EQ(capture.scan.wall().illumination.grid, (std::array<std::size_t, 2>{2, 3}));
+    ASSERT_EQ(capture.scan.wall().sensing.size(), 1U);
+    EXPECT_NEAR(
+        (capture.scan.wall().sensing.positions[0] - core::Vec3(0.07, 0.07, 0)).norm(), 0.0, 1e-12);
     // Row 1 of the file is (2, 5), the grid's first point; row 0 is (4, 9), its last.
-    EXPECT_NEAR(
-        (capture.scan.illumination.positions[0] - core::Vec3(0.02, 0.05, 0)).norm(), 0, 1e-12);
+    EXPECT_NEAR((capture.scan.wall().illumination.positions[0] - core::Vec3(0.02, 0.05, 0)).norm(),
+                0,
+                1e-12);
     EXPECT_EQ(capture.transient.histogram(0)[3], 13.0F);
-    EXPECT_NEAR(
-        (capture.scan.illumination.positions[5] - core::Vec3(0.04, 0.09, 0)).norm(), 0, 1e-12);
+    EXPECT_NEAR((capture.scan.wall().illumination.positions[5] - core::Vec3(0.04, 0.09, 0)).norm(),
+                0,
+                1e-12);
     EXPECT_EQ(capture.transient.histogram(5)[3], 3.0F);
     EXPECT_EQ(capture.time_axis.bin_width_m, 0.0048);
     EXPECT_EQ(capture.unit, core::TransientUnit::Counts);
@@ -88,22 +91,22 @@ TEST(PointListCapture, OneIlluminationPointIsASingleScan) {
     std::vector<Row> rows = one_detector();
     for (Row& row : rows) std::swap(row.lit, row.seen);
     const core::Capture capture = PointLists(rows).read();
-    EXPECT_EQ(capture.scan.pattern, core::ScanPattern::Single);
+    EXPECT_EQ(capture.scan.wall().pattern, core::ScanPattern::Single);
     EXPECT_EQ(capture.transient.histogram(0)[3], 13.0F);
 }
 
 TEST(PointListCapture, AllPairsAreAnExhaustiveScan) {
     const core::Capture capture =
         PointLists({{{1, 1}, {8, 8}}, {{1, 1}, {9, 8}}, {{2, 1}, {9, 8}}, {{2, 1}, {8, 8}}}).read();
-    EXPECT_EQ(capture.scan.pattern, core::ScanPattern::Exhaustive);
+    EXPECT_EQ(capture.scan.wall().pattern, core::ScanPattern::Exhaustive);
     EXPECT_EQ(capture.scan.num_pairs(), 4U);
     EXPECT_EQ(capture.transient.histogram(2)[0], 30.0F);  // second illumination, first sensing
 }
 
 TEST(PointListCapture, SamePointsAreAConfocalScan) {
     const core::Capture capture = PointLists({{{3, 1}, {3, 1}}, {{1, 2}, {1, 2}}}).read();
-    EXPECT_EQ(capture.scan.pattern, core::ScanPattern::Confocal);
-    EXPECT_FALSE(capture.scan.sensing.grid);
+    EXPECT_EQ(capture.scan.wall().pattern, core::ScanPattern::Confocal);
+    EXPECT_FALSE(capture.scan.wall().sensing.grid);
     EXPECT_EQ(capture.transient.histogram(1)[1], 11.0F);
 }
 
@@ -136,8 +139,8 @@ TEST(PointListCapture, RefusesPairsThatAreNoScan) {
 
 TEST(PointListCapture, DepthIndicesAreAlongZ) {
     const core::Capture capture = PointLists(one_detector(), 3).read();
-    EXPECT_NEAR(capture.scan.illumination.positions[0].z(), 0.03, 1e-12);
-    EXPECT_NEAR(capture.scan.sensing.positions[0].z(), 0.0, 1e-12);
+    EXPECT_NEAR(capture.scan.wall().illumination.positions[0].z(), 0.03, 1e-12);
+    EXPECT_NEAR(capture.scan.wall().sensing.positions[0].z(), 0.0, 1e-12);
 }
 
 TEST(PointListCapture, NamesTheFileThatIsMissingOrWrong) {

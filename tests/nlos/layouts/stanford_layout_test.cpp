@@ -53,9 +53,9 @@ class StanfordFile {
 
 TEST(StanfordCapture, PointsFollowTheAxesOfTheFile) {
     const core::Capture capture = StanfordFile().read();
-    EXPECT_EQ(capture.scan.pattern, core::ScanPattern::Confocal);
-    EXPECT_EQ(capture.scan.opl_origin, core::OplOrigin::RelayWall);
-    const auto& points = capture.scan.sensing;
+    EXPECT_EQ(capture.scan.wall().pattern, core::ScanPattern::Confocal);
+    EXPECT_EQ(capture.scan.wall().opl_origin, core::OplOrigin::RelayWall);
+    const auto& points = capture.scan.wall().sensing;
     EXPECT_EQ(points.grid, (std::array<std::size_t, 2>{kSide, kSide}));
     EXPECT_NEAR((points.positions[0] - core::Vec3(-0.4, 0.4, 0.0)).norm(), 0.0, 1e-12);
     EXPECT_NEAR((points.positions[1] - core::Vec3(-0.4, 0.0, 0.0)).norm(), 0.0, 1e-12);

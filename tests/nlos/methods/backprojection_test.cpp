@@ -20,7 +20,7 @@ using core::Vec3;
 constexpr std::array kCompensations{Compensation::None, Compensation::Diffuse, Compensation::Retro};
 
 struct Problem {
-    core::Scan scan;
+    core::WallScan scan;
     core::TimeAxis axis{0.35, 0.02, 60};
     VolumeAxes voxels;
     Compensation compensation = Compensation::None;
@@ -58,7 +58,7 @@ std::vector<double> random_values(std::size_t count, unsigned seed) {
 }
 
 PairList<double> pair_list(const Problem& problem, std::span<const double> histograms) {
-    const core::Scan& scan = problem.scan;
+    const core::WallScan& scan = problem.scan;
     PairList<double> data{scan.pattern,
                           problem.axis,
                           histograms,
@@ -201,8 +201,8 @@ TEST(Backprojection, OfAConfocalGridEqualsThatOfPairsOnAnyCommonLattice) {
         expect_equal(run_grid(problem, y), run_pairs(problem, y), 1e-10);
     }
     Problem coarse = make_problem(ScanPattern::Confocal);
-    coarse.scan.sensing = nlos_test::wall_grid({4, 24}, {0.05, 0.01});
-    coarse.scan.illumination = coarse.scan.sensing;
+    coarse.scan.wall().sensing = nlos_test::wall_grid({4, 24}, {0.05, 0.01});
+    coarse.scan.wall().illumination = coarse.scan.wall().sensing;
     for (const std::size_t num_y : {12, 16, 18}) {
         coarse.voxels.y_m = cell_centers(-0.12, 0.12, num_y);
         const auto y = random_values(coarse.num_values(), 6);
@@ -230,21 +230,26 @@ TEST(Backprojection, OfACaptureCountingDownEqualsThatOfPairs) {
 TEST(Backprojection, OfAGridTakesDeviceLegsOffByFractionsOfABin) {
     const auto points = nlos_test::wall_grid({8, 8}, {0.05, 0.05});
     core::Capture capture = nlos_test::confocal_capture(points, {1.0, 0.01, 200});
-    capture.scan.opl_origin = core::OplOrigin::Device;
-    capture.scan.laser_position = Vec3(0.3, 0.1, -0.5);
-    capture.scan.detector_position = Vec3(-0.3, 0.2, -0.6);
+    capture.scan.wall().opl_origin = core::OplOrigin::Device;
+    capture.scan.wall().laser_position = Vec3(0.3, 0.1, -0.5);
+    capture.scan.wall().detector_position = Vec3(-0.3, 0.2, -0.6);
     const Vec3 scatterer(0.025, -0.075, 0.5);
     nlos_test::add_scatterer(capture, scatterer, 0.0);
     VolumeAxes voxels;
     voxels.x_m = cell_centers(-0.2, 0.2, 8);
     voxels.y_m = voxels.x_m;
     voxels.z_m = cell_centers(0.4, 0.6, 41);
-    const WallFrame wall = derive_wall_frame(capture.scan);
+    const WallFrame wall = derive_wall_frame(capture.scan.wall());
     const core::Progress progress;
-    const Volume volume = backproject(
-        {capture.scan, capture.time_axis, capture.transient, wall, voxels, {0.4, 0.6}, progress},
-        {},
-        1);
+    const Volume volume = backproject({capture.scan.wall(),
+                                       capture.time_axis,
+                                       capture.transient,
+                                       wall,
+                                       voxels,
+                                       {0.4, 0.6},
+                                       progress},
+                                      {},
+                                      1);
     // A bin covers 5 mm of depth: legs rounded to whole bins would smear and shift the peak.
     EXPECT_LT((nlos_test::brightest_point(volume) - scatterer).norm(), 5e-4);
 }

@@ -30,9 +30,9 @@ inline core::WallPoints wall_grid(std::array<std::size_t, 2> size,
 
 inline core::Capture confocal_capture(const core::WallPoints& points, const core::TimeAxis& axis) {
     core::Capture capture;
-    capture.scan.pattern = core::ScanPattern::Confocal;
-    capture.scan.sensing = points;
-    capture.scan.illumination = points;
+    capture.scan.wall().pattern = core::ScanPattern::Confocal;
+    capture.scan.wall().sensing = points;
+    capture.scan.wall().illumination = points;
     capture.time_axis = axis;
     capture.transient = core::Transient(points.size(), axis.num_bins);
     return capture;
@@ -42,7 +42,7 @@ inline core::Capture confocal_capture(const core::WallPoints& points, const core
 inline void add_scatterer(core::Capture& capture, const core::Vec3& position, double falloff) {
     const core::TimeAxis& axis = capture.time_axis;
     for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
-        const core::Scan& scan = capture.scan;
+        const core::WallScan& scan = capture.scan.wall();
         const double out =
             (scan.illumination.positions[scan.illumination_index(pair)] - position).norm();
         const double back = (scan.sensing.positions[scan.sensing_index(pair)] - position).norm();

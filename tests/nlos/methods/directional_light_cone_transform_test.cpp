@@ -31,7 +31,7 @@ void add_plate(core::Capture& capture,
         for (int iy = -26; iy <= 26; ++iy) {
             const Vec3 p(0.01 * ix, 0.01 * iy, depth_m + 0.01 * (slope.x() * ix + slope.y() * iy));
             for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
-                const Vec3 d = p - capture.scan.sensing.positions[pair];
+                const Vec3 d = p - capture.scan.wall().sensing.positions[pair];
                 const double bin = (2.0 * d.norm() - axis.opl_start_m) / axis.bin_width_m - 0.5;
                 const auto first = static_cast<std::size_t>(bin);
                 if (bin < 0.0 || first + 1 >= capture.transient.num_bins()) continue;

@@ -17,7 +17,7 @@ struct Case {
     VolumeAxes axes;
 
     MethodInput input(const core::Progress& progress) const {
-        return {capture.scan,
+        return {capture.scan.wall(),
                 capture.time_axis,
                 capture.transient,
                 wall,
@@ -31,7 +31,7 @@ Case make_case() {
     Case c;
     c.capture =
         nlos_test::confocal_capture(nlos_test::wall_grid({9, 8}, {0.05, 0.05}), {0.0, 0.02, 100});
-    c.wall = derive_wall_frame(c.capture.scan);
+    c.wall = derive_wall_frame(c.capture.scan.wall());
     c.axes.x_m = cell_centers(c.wall.min_m[0], c.wall.max_m[0], 9);
     c.axes.y_m = cell_centers(c.wall.min_m[1], c.wall.max_m[1], 8);
     c.axes.z_m = cell_centers(0.3, 0.6, 15);

@@ -17,7 +17,7 @@ Volume migrate(const core::Capture& capture,
                std::array<double, 2> z_range_m,
                std::size_t num_z,
                Falloff falloff) {
-    const WallFrame wall = derive_wall_frame(capture.scan);
+    const WallFrame wall = derive_wall_frame(capture.scan.wall());
     VolumeAxes axes;
     axes.x_m = cell_centers(wall.min_m[0], wall.max_m[0], wall.grid->size[0]);
     axes.y_m = cell_centers(wall.min_m[1], wall.max_m[1], wall.grid->size[1]);
@@ -26,10 +26,15 @@ Volume migrate(const core::Capture& capture,
     const core::Progress progress;
     ReconstructSettings settings;
     settings.falloff = falloff;
-    return fk_migration(
-        {capture.scan, capture.time_axis, capture.transient, wall, axes, z_range_m, progress},
-        settings,
-        1);
+    return fk_migration({capture.scan.wall(),
+                         capture.time_axis,
+                         capture.transient,
+                         wall,
+                         axes,
+                         z_range_m,
+                         progress},
+                        settings,
+                        1);
 }
 
 TEST(FkMigration, FindsAPointOnOblongGridsWithUnequalPitch) {

@@ -15,11 +15,17 @@ namespace {
 /// The cone of a grid of 9 x 7 points and an axis of 120 bins.
 struct ConeCase {
     core::Capture capture;
-    WallFrame wall = derive_wall_frame(capture.scan);
+    WallFrame wall = derive_wall_frame(capture.scan.wall());
     VolumeAxes axes{};
     core::Progress progress{};
-    Cone cone = make_cone(
-        {capture.scan, capture.time_axis, capture.transient, wall, axes, {0.4, 0.7}, progress}, 1);
+    Cone cone = make_cone({capture.scan.wall(),
+                           capture.time_axis,
+                           capture.transient,
+                           wall,
+                           axes,
+                           {0.4, 0.7},
+                           progress},
+                          1);
 
     explicit ConeCase(double pitch_m)
         : capture(nlos_test::confocal_capture(nlos_test::wall_grid({9, 7}, {pitch_m, pitch_m}),

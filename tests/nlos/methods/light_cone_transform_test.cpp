@@ -19,7 +19,7 @@ Volume transform(const core::Capture& capture,
                  std::array<double, 2> z_range_m,
                  std::size_t num_z,
                  Falloff falloff = Falloff::Diffuse) {
-    const WallFrame wall = derive_wall_frame(capture.scan);
+    const WallFrame wall = derive_wall_frame(capture.scan.wall());
     VolumeAxes axes;
     axes.x_m = cell_centers(wall.min_m[0], wall.max_m[0], wall.grid->size[0]);
     axes.y_m = cell_centers(wall.min_m[1], wall.max_m[1], wall.grid->size[1]);
@@ -29,10 +29,15 @@ Volume transform(const core::Capture& capture,
     ReconstructSettings settings;
     settings.falloff = falloff;
     settings.snr = 10.0;
-    return light_cone_transform(
-        {capture.scan, capture.time_axis, capture.transient, wall, axes, z_range_m, progress},
-        settings,
-        1);
+    return light_cone_transform({capture.scan.wall(),
+                                 capture.time_axis,
+                                 capture.transient,
+                                 wall,
+                                 axes,
+                                 z_range_m,
+                                 progress},
+                                settings,
+                                1);
 }
 
 Vec3 brightest_voxel(const Volume& volume) {
@@ -60,9 +65,9 @@ TEST(LightConeTransform, FindsAPointOnOblongGridsWithUnequalPitch) {
 
 TEST(LightConeTransform, TakesDeviceLegsOffEveryPoint) {
     core::Capture capture = confocal_capture(wall_grid({16, 16}, {0.05, 0.05}), {0.9, 0.016, 160});
-    capture.scan.opl_origin = core::OplOrigin::Device;
-    capture.scan.laser_position = Vec3(0.5, 0.3, -0.6);
-    capture.scan.detector_position = Vec3(-0.4, 0.1, -0.7);
+    capture.scan.wall().opl_origin = core::OplOrigin::Device;
+    capture.scan.wall().laser_position = Vec3(0.5, 0.3, -0.6);
+    capture.scan.wall().detector_position = Vec3(-0.4, 0.1, -0.7);
     const Vec3 scatterer(-0.125, 0.075, 0.6);
     nlos_test::add_scatterer(capture, scatterer, 4.0);
     const Vec3 found = brightest_voxel(transform(capture, {0.3, 0.9}, 75));

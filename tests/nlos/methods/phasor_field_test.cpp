@@ -28,17 +28,17 @@ ReconstructSettings with_wave() {
 core::Capture random_capture(ScanPattern pattern) {
     core::Capture capture =
         nlos_test::confocal_capture(nlos_test::wall_grid({7, 5}, {0.05, 0.04}), {0.3, 0.01, 150});
-    capture.scan.pattern = pattern;
+    capture.scan.wall().pattern = pattern;
     if (pattern == ScanPattern::Single) {
-        capture.scan.illumination = nlos_test::wall_grid({1, 1}, {1.0, 1.0});
-        capture.scan.illumination.positions[0] = Vec3(0.13, -0.2, 0.0);
+        capture.scan.wall().illumination = nlos_test::wall_grid({1, 1}, {1.0, 1.0});
+        capture.scan.wall().illumination.positions[0] = Vec3(0.13, -0.2, 0.0);
     }
     if (pattern == ScanPattern::Exhaustive) {
-        capture.scan.illumination = nlos_test::wall_grid({2, 3}, {0.07, 0.11});
+        capture.scan.wall().illumination = nlos_test::wall_grid({2, 3}, {0.07, 0.11});
     }
-    capture.scan.opl_origin = core::OplOrigin::Device;
-    capture.scan.laser_position = Vec3(0.1, 0.0, -0.15);
-    capture.scan.detector_position = Vec3(-0.05, 0.08, -0.1);
+    capture.scan.wall().opl_origin = core::OplOrigin::Device;
+    capture.scan.wall().laser_position = Vec3(0.1, 0.0, -0.15);
+    capture.scan.wall().detector_position = Vec3(-0.05, 0.08, -0.1);
     capture.transient = core::Transient(capture.scan.num_pairs(), capture.time_axis.num_bins);
     std::mt19937_64 generator(test_support::seed_of("random_capture"));
     std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
@@ -56,7 +56,7 @@ std::complex<double> wave_at(double t) {
 /// The sum over pairs and bins that defines the field, in double precision.
 double field_magnitude(const core::Capture& capture, const Vec3& p) {
     std::complex<double> sum = 0.0;
-    const core::Scan& scan = capture.scan;
+    const core::WallScan& scan = capture.scan.wall();
     for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
         const Vec3& l = scan.illumination.positions[scan.illumination_index(pair)];
         const Vec3& s = scan.sensing.positions[scan.sensing_index(pair)];
@@ -101,13 +101,17 @@ double largest_error(const core::Capture& capture, const Volume& volume) {
 
 double error_of(ScanPattern pattern, const auto& method) {
     const core::Capture capture = random_capture(pattern);
-    const WallFrame wall = derive_wall_frame(capture.scan);
+    const WallFrame wall = derive_wall_frame(capture.scan.wall());
     const VolumeAxes axes = axes_of(wall);
     const core::Progress progress;
-    return largest_error(
-        capture,
-        method(MethodInput{
-            capture.scan, capture.time_axis, capture.transient, wall, axes, {0.3, 0.6}, progress}));
+    return largest_error(capture,
+                         method(MethodInput{capture.scan.wall(),
+                                            capture.time_axis,
+                                            capture.transient,
+                                            wall,
+                                            axes,
+                                            {0.3, 0.6},
+                                            progress}));
 }
 
 TEST(PhasorField, EqualsItsDefiningSumForEveryScan) {
@@ -132,14 +136,19 @@ TEST(PhasorField, OfFilteredHistogramsIsTheSameWithinInterpolation) {
 
 TEST(PhasorField, ServesListsOfPoints) {
     core::Capture capture = random_capture(ScanPattern::Single);
-    capture.scan.sensing.grid.reset();
-    const WallFrame wall = derive_wall_frame(capture.scan);
+    capture.scan.wall().sensing.grid.reset();
+    const WallFrame wall = derive_wall_frame(capture.scan.wall());
     VolumeAxes axes = axes_of(wall);
     const core::Progress progress;
-    const Volume volume = phasor_field(
-        {capture.scan, capture.time_axis, capture.transient, wall, axes, {0.3, 0.6}, progress},
-        with_wave(),
-        1);
+    const Volume volume = phasor_field({capture.scan.wall(),
+                                        capture.time_axis,
+                                        capture.transient,
+                                        wall,
+                                        axes,
+                                        {0.3, 0.6},
+                                        progress},
+                                       with_wave(),
+                                       1);
     EXPECT_LT(largest_error(capture, volume), 0.04);
 }
 
@@ -159,7 +168,7 @@ TEST(VirtualWave, WavelengthFollowsThePitch) {
     const core::Capture confocal = random_capture(ScanPattern::Confocal);
     const auto wavelength = [](const core::Capture& capture, double bin_width_m) {
         return default_wavelength_m(
-            capture.scan, derive_wall_frame(capture.scan), {0.0, bin_width_m, 100});
+            capture.scan.wall(), derive_wall_frame(capture.scan.wall()), {0.0, bin_width_m, 100});
     };
     EXPECT_NEAR(wavelength(single, 0.01), 4 * 0.05, 1e-9);
     EXPECT_NEAR(wavelength(confocal, 0.01), 6 * 0.05, 1e-9);

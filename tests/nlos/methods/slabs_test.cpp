@@ -29,15 +29,20 @@ struct Example {
                                         {0.2, 2.2 / num_bins, num_bins});
         nlos_test::add_scatterer(capture, Vec3(0.06, -0.1, 0.55), 4.0);
         nlos_test::add_scatterer(capture, Vec3(-0.1, 0.14, 0.66), 4.0);
-        wall = derive_wall_frame(capture.scan);
+        wall = derive_wall_frame(capture.scan.wall());
         axes.x_m = cell_centers(wall.min_m[0], wall.max_m[0], size);
         axes.y_m = cell_centers(wall.min_m[1], wall.max_m[1], size);
         axes.z_m = cell_centers(kDepths_m[0], kDepths_m[1], 60);
     }
 
     MethodInput input() const {
-        return {
-            capture.scan, capture.time_axis, capture.transient, wall, axes, kDepths_m, progress};
+        return {capture.scan.wall(),
+                capture.time_axis,
+                capture.transient,
+                wall,
+                axes,
+                kDepths_m,
+                progress};
     }
 };
 

@@ -66,7 +66,7 @@ TEST(Film, ExhaustiveScansShowTheMiddleLitPoint) {
 
 TEST(Film, ScansWithMoreLitThanSensingPointsShowTheLitOnes) {
     core::Capture capture = test_support::example_capture(core::ScanPattern::Exhaustive);
-    std::swap(capture.scan.sensing, capture.scan.illumination);
+    std::swap(capture.scan.wall().sensing, capture.scan.wall().illumination);
     const std::vector<ImagePanel> frames = film_panels(capture, 300);
     ASSERT_EQ(frames[0].values.size(), 6U);
     for (std::size_t lit = 0; lit < 6; ++lit) {  // sensing point 2 of 4
@@ -86,8 +86,8 @@ TEST(Film, SequencesAreShownFrameByFrame) {
 
 TEST(Film, NeedsAnImageAndTime) {
     core::Capture list = test_support::example_capture(core::ScanPattern::Confocal);
-    list.scan.sensing.grid.reset();
-    list.scan.illumination.grid.reset();
+    list.scan.wall().sensing.grid.reset();
+    list.scan.wall().illumination.grid.reset();
     EXPECT_ERROR_WITH(film_panels(list, 300), "a list of points");
     core::Capture gate = test_support::example_capture(core::ScanPattern::Confocal);
     gate.time_axis.num_bins = 1;

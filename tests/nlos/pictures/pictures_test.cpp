@@ -167,8 +167,8 @@ TEST(Pictures, EveryKindOfCaptureCanBeDrawn) {
         EXPECT_FALSE(encode_panels(capture_panels(capture), 3).empty());
     }
     core::Capture list = test_support::example_capture(core::ScanPattern::Confocal);
-    list.scan.sensing.grid.reset();
-    list.scan.illumination.grid.reset();
+    list.scan.wall().sensing.grid.reset();
+    list.scan.wall().illumination.grid.reset();
     EXPECT_EQ(capture_panels(list).size(), 2U);  // no picture of the wall
 
     core::Capture gate = test_support::example_capture(core::ScanPattern::Confocal);
@@ -180,7 +180,7 @@ TEST(Pictures, EveryKindOfCaptureCanBeDrawn) {
 
 TEST(Pictures, ScansWithMoreLitThanSensingPointsShowTheLightOfLitPoints) {
     core::Capture capture = test_support::example_capture(core::ScanPattern::Exhaustive);
-    std::swap(capture.scan.sensing, capture.scan.illumination);
+    std::swap(capture.scan.wall().sensing, capture.scan.wall().illumination);
     const std::vector<Panel> panels = capture_panels(capture);
     const std::vector<float>& shown = image(panels[1]).values;
     ASSERT_EQ(shown.size(), 6U);
@@ -244,7 +244,7 @@ TEST(Pictures, PreviewShowsTheImageUpright) {
     core::Capture capture = test_support::example_image();
     for (float& value : capture.transient.values()) value = 0.0F;
     capture.transient.histogram(1)[2] = 2.0F;  // x 0, y 1: bottom left
-    const std::string png = encode_preview_png(capture);
+    const std::string png = encode_preview_png(capture, capture.scan.as<core::ImageScan>()->camera);
     const cv::Mat picture = test_support::decoded_png(png);
     ASSERT_EQ(picture.cols, 639);
     ASSERT_EQ(picture.rows, 426);

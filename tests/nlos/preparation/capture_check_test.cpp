@@ -98,7 +98,8 @@ TEST(CaptureCheck, TellsTheFactorOfWrongBinsAndOfAWrongWall) {
                     factor,
                     0.05 * factor);
         core::Capture wall = right;
-        for (core::WallPoints* points : {&wall.scan.sensing, &wall.scan.illumination}) {
+        for (core::WallPoints* points :
+             {&wall.scan.wall().sensing, &wall.scan.wall().illumination}) {
             for (Vec3& position : points->positions) position /= factor;
         }
         EXPECT_NEAR(std::sqrt(bend_of_first_light(wall, first_light_m(wall, dark))->k),

@@ -22,9 +22,9 @@ core::Capture plate_with_direct_return(double direct_m, bool has_device_legs) {
     core::Capture capture = nlos_test::confocal_capture(
         nlos_test::wall_grid({16, 16}, {0.05, 0.05}), {-0.3, 0.01, 240});
     if (has_device_legs) {
-        capture.scan.opl_origin = core::OplOrigin::Device;
-        capture.scan.laser_position = core::Vec3(0.1, -0.1, 0.8);
-        capture.scan.detector_position = core::Vec3(0.0, 0.1, 0.8);
+        capture.scan.wall().opl_origin = core::OplOrigin::Device;
+        capture.scan.wall().laser_position = core::Vec3(0.1, -0.1, 0.8);
+        capture.scan.wall().detector_position = core::Vec3(0.0, 0.1, 0.8);
         capture.time_axis.opl_start_m += 1.6;
     }
     for (int ix = -8; ix <= 8; ++ix) {
@@ -39,7 +39,8 @@ core::Capture plate_with_direct_return(double direct_m, bool has_device_legs) {
         auto histogram = capture.transient.histogram(pair);
         for (float& value : histogram) value *= 100.0F / largest;
         const double bin =
-            (direct_m + capture.scan.device_legs_m(pair) - capture.time_axis.opl_start_m) / 0.01 -
+            (direct_m + capture.scan.wall().device_legs_m(pair) - capture.time_axis.opl_start_m) /
+                0.01 -
             0.5;
         const auto before = static_cast<std::size_t>(bin);
         const auto late = static_cast<float>(bin - std::floor(bin));
@@ -63,7 +64,7 @@ TEST(DirectResponse, ShowsTheResponse) {
         ASSERT_TRUE(direct.has_value());
         EXPECT_NEAR(direct->response.jitter_fwhm_ps, 250.0, 12.0);
         EXPECT_NEAR(direct->response.tail_ps, 120.0, 12.0);
-        const double longest_legs = core::device_leg_range_m(capture.scan)[1];
+        const double longest_legs = core::device_leg_range_m(capture.scan.wall())[1];
         EXPECT_GT(direct->end_opl_m, longest_legs + 4.0 * kResponse.tail_m);
         EXPECT_LT(direct->end_opl_m, longest_legs + 0.5);
     }

@@ -49,7 +49,7 @@ TEST(HistogramPreparation, TakesOffAmbientLightAndAddsUpBins) {
 }
 
 TEST(HistogramPreparation, MultiplyingByRangeUndoesTheFalloff) {
-    core::Scan scan;
+    core::WallScan scan;
     scan.pattern = core::ScanPattern::Confocal;
     scan.sensing.positions = {core::Vec3(0.0, 0.0, 0.0), core::Vec3(0.3, 0.0, 0.0)};
     scan.sensing.normals.assign(2, core::Vec3::UnitZ());

@@ -23,9 +23,9 @@ using core::Vec3;
 /// Ambient light of 1 + pair, 100 more in bins [150, 170) of 320.
 core::Capture lit_pairs(std::size_t num_pairs) {
     core::Capture capture;
-    capture.scan.pattern = core::ScanPattern::Confocal;
-    capture.scan.sensing = nlos_test::wall_grid({num_pairs, 1}, {0.1, 0.1});
-    capture.scan.illumination = capture.scan.sensing;
+    capture.scan.wall().pattern = core::ScanPattern::Confocal;
+    capture.scan.wall().sensing = nlos_test::wall_grid({num_pairs, 1}, {0.1, 0.1});
+    capture.scan.wall().illumination = capture.scan.wall().sensing;
     capture.time_axis = {0.0, 0.01, 320};
     capture.transient = core::Transient(num_pairs, 320);
     for (std::size_t pair = 0; pair < num_pairs; ++pair) {
@@ -85,7 +85,7 @@ TEST(ObservedStatistics, SignalToNoiseRatioIsThatOfAnAxisOfObservedBins) {
     const auto ratio = [](const core::Capture& of, int num_bins) {
         PreparationPlan plan{1, num_bins, {1.0, 2.0, 3.0}};
         plan.observed = of.observed;
-        return wiener_snr(of.scan, of.time_axis, of.transient, plan, Falloff::Diffuse);
+        return wiener_snr(of.scan.wall(), of.time_axis, of.transient, plan, Falloff::Diffuse);
     };
     const double observed = ratio(capture, 320);
     EXPECT_NEAR(observed, ratio(shorter, 80), 1e-9);
@@ -119,7 +119,7 @@ TEST(ObservedStatistics, TheAxisEndsWhereNobodyLooked) {
 TEST(ObservedStatistics, MidpointsAverageThePairsThatLooked) {
     core::Capture capture =
         nlos_test::confocal_capture(nlos_test::wall_grid({4, 4}, {0.1, 0.1}), {0.0, 0.02, 100});
-    capture.scan.pattern = core::ScanPattern::Exhaustive;
+    capture.scan.wall().pattern = core::ScanPattern::Exhaustive;
     capture.transient = core::Transient(256, 100);
     for (float& value : capture.transient.values()) value = 1.0F;
     const core::Capture whole_capture = capture;

@@ -74,7 +74,7 @@ TEST(ScatterFit, HasTheSameBitsForAnyNumberOfThreads) {
 
 TEST(CaptureCorrection, WallAndLengthsAreOneButForSize) {
     const core::Capture capture = bar_capture(wall_grid({12, 12}, {0.08, 0.08}));
-    EXPECT_TRUE(is_scale_free(capture.scan));
+    EXPECT_TRUE(is_scale_free(capture.scan.wall()));
     EXPECT_NEAR(share(capture, {.length_factor = 0.5}), share(capture, {.wall_factor = 2.0}), 1e-3);
 }
 
@@ -90,10 +90,10 @@ TEST(CaptureCorrection, FlipsOfConfocalGridsAreMirrorImages) {
 
 TEST(CaptureCorrection, FlipsAgainstASpotOffTheMiddleAreNone) {
     core::Capture capture = bar_capture(wall_grid({12, 12}, {0.07, 0.07}));
-    capture.scan.pattern = core::ScanPattern::Single;
-    capture.scan.illumination = wall_grid({1, 1}, {0.0, 0.0});
+    capture.scan.wall().pattern = core::ScanPattern::Single;
+    capture.scan.wall().illumination = wall_grid({1, 1}, {0.0, 0.0});
     EXPECT_TRUE(is_mirror_image(capture, sample_of(capture), {.flip_x = true}));
-    capture.scan.illumination.positions[0] = Vec3(0.2, 0.0, 0.0);
+    capture.scan.wall().illumination.positions[0] = Vec3(0.2, 0.0, 0.0);
     EXPECT_FALSE(is_mirror_image(capture, sample_of(capture), {.flip_x = true}));
     EXPECT_TRUE(is_mirror_image(capture, sample_of(capture), {.flip_y = true}));
 }
@@ -116,7 +116,7 @@ TEST(SlipText, NamesTheOptionThatMends) {
               "lengths look 1000 times too long, as if ps had been taken for ns: --set "
               "capture.bin_width_m=0.012; or the wall looks 1000 times too small: --set "
               "capture.wall_size_m=[900,900]");
-    capture.scan.opl_origin = core::OplOrigin::Device;
+    capture.scan.wall().opl_origin = core::OplOrigin::Device;
     capture.time_axis = {1.5, 0.024, 250};
     EXPECT_EQ(describe_slip(capture, {.length_factor = 0.5}),
               "lengths look 2 times too long, as if round trips had been doubled once more: --set "

@@ -11,8 +11,8 @@ namespace {
 using core::Vec3;
 using nlos_test::wall_grid;
 
-core::Scan scan_of(const core::WallPoints& points) {
-    core::Scan scan;
+core::WallScan scan_of(const core::WallPoints& points) {
+    core::WallScan scan;
     scan.sensing = points;
     scan.illumination = points;
     return scan;

@@ -15,8 +15,8 @@ namespace {
 /// A confocal scan of histograms with one peak each, in radiance.
 core::Capture peaked_capture() {
     core::Capture capture;
-    capture.scan.sensing = test_support::example_grid(16, 16);
-    capture.scan.illumination = capture.scan.sensing;
+    capture.scan.wall().sensing = test_support::example_grid(16, 16);
+    capture.scan.wall().illumination = capture.scan.wall().sensing;
     capture.time_axis = {0.4, 0.008, 128};
     capture.transient = core::Transient(256, 128);
     for (std::size_t pair = 0; pair < 256; ++pair) {
@@ -54,8 +54,8 @@ TEST(WienerSnr, CountsTellTheRatioOfTheirPowers) {
             }
         }
         const double wanted = 1.0 / (1.0 + noise / signal);
-        const double found =
-            wiener_snr(counts.scan, counts.time_axis, counts.transient, plan, Falloff::Diffuse);
+        const double found = wiener_snr(
+            counts.scan.wall(), counts.time_axis, counts.transient, plan, Falloff::Diffuse);
         EXPECT_NEAR(found / wanted, 1.0, 0.1) << photons_per_point;
     }
 }
@@ -65,7 +65,8 @@ TEST(WienerSnr, NothingButNoiseGivesTheSmallest) {
     for (float& value : capture.transient.values()) value = 0.0F;
     const PreparationPlan plan{1, 128, {}};
     EXPECT_EQ(
-        wiener_snr(capture.scan, capture.time_axis, capture.transient, plan, Falloff::Diffuse),
+        wiener_snr(
+            capture.scan.wall(), capture.time_axis, capture.transient, plan, Falloff::Diffuse),
         1e-3);
 }
 

@@ -20,14 +20,19 @@ core::Capture empty_capture() {
 }
 
 ConfocalProblem problem_of(const core::Capture& capture, bool is_counts) {
-    const WallFrame wall = derive_wall_frame(capture.scan);
+    const WallFrame wall = derive_wall_frame(capture.scan.wall());
     const core::Progress progress;
     const VolumeAxes axes{std::vector<double>(kProblemSide),
                           std::vector<double>(kProblemSide),
                           {0.6},
                           wall.world_from_wall};
-    MethodInput input{
-        capture.scan, capture.time_axis, capture.transient, wall, axes, {0.4, 0.8}, progress};
+    MethodInput input{capture.scan.wall(),
+                      capture.time_axis,
+                      capture.transient,
+                      wall,
+                      axes,
+                      {0.4, 0.8},
+                      progress};
     input.measurement.is_counts = is_counts;
     return make_confocal_problem(input, {}, false);
 }

@@ -104,11 +104,17 @@ TEST(TimeOperator, LightBeyondTheAxisComesInByTheResponse) {
 struct ConeExample {
     core::Capture capture =
         nlos_test::confocal_capture(nlos_test::wall_grid({9, 7}, {0.05, 0.06}), {0.8, 0.02, 30});
-    WallFrame wall = derive_wall_frame(capture.scan);
+    WallFrame wall = derive_wall_frame(capture.scan.wall());
     VolumeAxes axes{};
     core::Progress progress{};
-    Cone cone = make_cone(
-        {capture.scan, capture.time_axis, capture.transient, wall, axes, {0.4, 0.7}, progress}, 1);
+    Cone cone = make_cone({capture.scan.wall(),
+                           capture.time_axis,
+                           capture.transient,
+                           wall,
+                           axes,
+                           {0.4, 0.7},
+                           progress},
+                          1);
 
     std::size_t at(std::size_t ix, std::size_t v, std::size_t iy) const {
         return (ix * cone.num_v() + v) * cone.ny + iy;

@@ -27,7 +27,7 @@ core::Capture uneven_scan(core::ScanPattern pattern, unsigned seed) {
     std::mt19937 generator(seed);
     std::uniform_real_distribution<double> uniform(-0.5, 0.5);
     core::Capture capture;
-    capture.scan.pattern = pattern;
+    capture.scan.wall().pattern = pattern;
     const auto add = [&](core::WallPoints& points, int count) {
         for (int i = 0; i < count; ++i) {
             points.positions.emplace_back(
@@ -35,11 +35,11 @@ core::Capture uneven_scan(core::ScanPattern pattern, unsigned seed) {
             points.normals.push_back(core::Vec3::UnitZ());
         }
     };
-    add(capture.scan.sensing, 40);
-    capture.scan.illumination = capture.scan.sensing;
+    add(capture.scan.wall().sensing, 40);
+    capture.scan.wall().illumination = capture.scan.wall().sensing;
     if (pattern != core::ScanPattern::Confocal) {
-        capture.scan.illumination = {};
-        add(capture.scan.illumination, pattern == core::ScanPattern::Single ? 1 : 3);
+        capture.scan.wall().illumination = {};
+        add(capture.scan.wall().illumination, pattern == core::ScanPattern::Single ? 1 : 3);
     }
     capture.time_axis = {0.7, 0.02, 90};
     capture.transient = core::Transient(capture.scan.num_pairs(), 90);
@@ -52,10 +52,10 @@ TEST(PairOperator, AdjointIsExactForEveryPatternWithGapsAndResponse) {
         const core::Capture capture = uneven_scan(pattern, 8);
         std::vector<core::BinRange> observed(capture.scan.num_pairs(), {10, 80});
         observed[3] = {0, 0};
-        const WallFrame wall = derive_wall_frame(capture.scan);
+        const WallFrame wall = derive_wall_frame(capture.scan.wall());
         const core::Progress progress;
         const VolumeAxes axes{{0.0}, {0.0}, {0.5}, wall.world_from_wall};
-        MethodInput input{capture.scan,
+        MethodInput input{capture.scan.wall(),
                           capture.time_axis,
                           capture.transient,
                           wall,
@@ -95,11 +95,16 @@ TEST(PairOperator, ShowsAPointAsTheClosedFormDoes) {
         core::Capture capture = uneven_scan(core::ScanPattern::Single, 12);
         const core::Vec3 point(0.1, -0.2, 0.6);
         nlos_test::add_scatterer(capture, point, falloff_power(falloff));
-        const WallFrame wall = derive_wall_frame(capture.scan);
+        const WallFrame wall = derive_wall_frame(capture.scan.wall());
         const core::Progress progress;
         const VolumeAxes axes{{0.0}, {0.0}, {0.5}, wall.world_from_wall};
-        const MethodInput input{
-            capture.scan, capture.time_axis, capture.transient, wall, axes, {0.4, 0.6}, progress};
+        const MethodInput input{capture.scan.wall(),
+                                capture.time_axis,
+                                capture.transient,
+                                wall,
+                                axes,
+                                {0.4, 0.6},
+                                progress};
         PairOperator light(input, falloff, 0.0);
         const core::Transform to_wall = wall.world_from_wall.inverse(Eigen::Isometry);
         light.set_voxels({(to_wall * point).cast<float>()});
@@ -112,10 +117,10 @@ TEST(PairOperator, ShowsAPointAsTheClosedFormDoes) {
         light.forward(std::vector<float>{1.0F}, pairs, histograms);
         const auto expected = capture.transient.values();
         const float largest = *std::ranges::max_element(expected);
-        const double illumination_depth = depth_from(capture.scan.illumination.positions[0]);
+        const double illumination_depth = depth_from(capture.scan.wall().illumination.positions[0]);
         for (std::size_t i = 0; i < histograms.size(); ++i) {
             const double depths =
-                illumination_depth * depth_from(capture.scan.sensing.positions[i / 90]);
+                illumination_depth * depth_from(capture.scan.wall().sensing.positions[i / 90]);
             const double cosines = falloff == Falloff::Facing ? depths * depths : 1.0;
             ASSERT_NEAR(histograms[i], cosines * expected[i], 1e-4 * largest);
         }
@@ -130,7 +135,7 @@ std::vector<double> histograms_of_spots(const core::Capture& capture,
     constexpr int kMoves = 20000;
     std::mt19937 generator(5);
     std::normal_distribution<double> normal(0.0, deviation_m);
-    const core::Scan& scan = capture.scan;
+    const core::WallScan& scan = capture.scan.wall();
     const core::TimeAxis& axis = capture.time_axis;
     std::vector<double> histograms(capture.transient.values().size(), 0.0);
     for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
@@ -160,11 +165,16 @@ TEST(PairOperator, BlursASpotAsMovedPointsDo) {
     for (const auto pattern : {core::ScanPattern::Single, core::ScanPattern::Confocal}) {
         core::Capture capture = uneven_scan(pattern, 14);
         const core::Vec3 point(0.3, -0.2, 0.6);
-        const WallFrame wall = derive_wall_frame(capture.scan);
+        const WallFrame wall = derive_wall_frame(capture.scan.wall());
         const core::Progress progress;
         const VolumeAxes axes{{0.0}, {0.0}, {0.5}, wall.world_from_wall};
-        MethodInput input{
-            capture.scan, capture.time_axis, capture.transient, wall, axes, {0.4, 0.6}, progress};
+        MethodInput input{capture.scan.wall(),
+                          capture.time_axis,
+                          capture.transient,
+                          wall,
+                          axes,
+                          {0.4, 0.6},
+                          progress};
         input.measurement.response = core::sample_response(core::GaussianResponse{0.06}, 0.02);
         PairOperator light(input, Falloff::Diffuse, 0.02 * std::sqrt(8.0 * std::log(2.0)));
         light.set_voxels({(wall.world_from_wall.inverse(Eigen::Isometry) * point).cast<float>()});

@@ -17,15 +17,16 @@ core::Capture plate_before_uneven_wall(double photons_of_brightest_bin) {
     std::mt19937 generator(2);
     std::uniform_real_distribution<double> uniform(-0.4, 0.4);
     core::Capture capture;
-    capture.scan.pattern = core::ScanPattern::Single;
+    capture.scan.wall().pattern = core::ScanPattern::Single;
     for (int i = 0; i < 300; ++i) {
         const double x = uniform(generator);
         const double y = uniform(generator);
-        capture.scan.sensing.positions.emplace_back(x, y, 0.025 * std::sin(7.0 * x + 3.0 * y));
-        capture.scan.sensing.normals.push_back(core::Vec3::UnitZ());
+        capture.scan.wall().sensing.positions.emplace_back(
+            x, y, 0.025 * std::sin(7.0 * x + 3.0 * y));
+        capture.scan.wall().sensing.normals.push_back(core::Vec3::UnitZ());
     }
-    capture.scan.illumination.positions.push_back(core::Vec3::Zero());
-    capture.scan.illumination.normals.push_back(core::Vec3::UnitZ());
+    capture.scan.wall().illumination.positions.push_back(core::Vec3::Zero());
+    capture.scan.wall().illumination.normals.push_back(core::Vec3::UnitZ());
     capture.time_axis = {0.8, 0.016, 64};
     capture.transient = core::Transient(300, 64);
     for (int ix = -8; ix <= 8; ++ix) {
@@ -110,7 +111,7 @@ TEST(PairSolver, LeavesNothingBesideThePlate) {
 TEST(PairSolver, FindsTheGainsOfPointsWithTheScene) {
     core::Capture capture = plate_before_uneven_wall(400.0);
     for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
-        const double x = capture.scan.sensing.positions[pair].x();
+        const double x = capture.scan.wall().sensing.positions[pair].x();
         const auto gain = static_cast<float>(std::exp2(5.0 * (x - 0.4)));
         for (float& value : capture.transient.histogram(pair)) value = std::round(gain * value);
     }

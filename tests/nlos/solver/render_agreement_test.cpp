@@ -24,7 +24,7 @@ constexpr double kSquareAlbedo = 0.5;
 const core::GaussianResponse kRenderedResponse{0.04};
 const Vec3 kCenter(0.1, -0.06, 0.7);
 
-core::Capture render_square(const core::Scan& scan, double side_m, const core::TimeAxis& axis) {
+core::Capture render_square(const core::WallScan& scan, double side_m, const core::TimeAxis& axis) {
     renderer::SceneGeometry geometry;
     geometry.objects = {
         test_support::parallelogram_object({kCenter - 0.5 * side_m * Vec3(1.0, 1.0, 0.0),
@@ -47,7 +47,7 @@ core::Capture render_square(const core::Scan& scan, double side_m, const core::T
 }
 
 /// What the operators leave out of the light of a pair, times the albedos and 1 / pi^3.
-double factor_of_pair(Falloff falloff, const core::Scan& scan, std::size_t pair) {
+double factor_of_pair(Falloff falloff, const core::WallScan& scan, std::size_t pair) {
     const double constants = kWallAlbedo * kWallAlbedo * kSquareAlbedo / std::pow(core::kPi, 3);
     if (falloff == Falloff::Facing) return constants;
     const Vec3 l = scan.illumination.positions[scan.illumination_index(pair)];
@@ -71,18 +71,23 @@ MethodInput input_of(const core::Capture& capture,
                      const WallFrame& wall,
                      const VolumeAxes& axes,
                      const core::Progress& progress) {
-    MethodInput input{
-        capture.scan, capture.time_axis, capture.transient, wall, axes, {0.6, 0.8}, progress};
+    MethodInput input{capture.scan.wall(),
+                      capture.time_axis,
+                      capture.transient,
+                      wall,
+                      axes,
+                      {0.6, 0.8},
+                      progress};
     input.measurement.response =
         core::sample_response(kRenderedResponse, capture.time_axis.bin_width_m);
     return input;
 }
 
 /// The operator's light of the square, absolute, over the renderer's.
-double pair_operator_error(Falloff falloff, const core::Scan& scan) {
+double pair_operator_error(Falloff falloff, const core::WallScan& scan) {
     const double side = 0.06;
     const core::Capture capture = render_square(scan, side, {1.2, 0.004, 256});
-    const WallFrame wall = derive_wall_frame(capture.scan);
+    const WallFrame wall = derive_wall_frame(capture.scan.wall());
     const core::Progress progress;
     const VolumeAxes axes{{0.0}, {0.0}, {0.7}, wall.world_from_wall};
     PairOperator light(input_of(capture, wall, axes, progress), falloff, 0.0);
@@ -103,7 +108,7 @@ double pair_operator_error(Falloff falloff, const core::Scan& scan) {
     std::vector<double> values;
     for (std::size_t i = 0; i < histograms.size(); ++i) {
         values.push_back(static_cast<double>(histograms[i]) *
-                         factor_of_pair(falloff, capture.scan, i / 256));
+                         factor_of_pair(falloff, capture.scan.wall(), i / 256));
     }
     const auto rendered = capture.transient.values();
     return relative_error(values, {rendered.begin(), rendered.end()});
@@ -114,9 +119,9 @@ double pair_operator_error(Falloff falloff, const core::Scan& scan) {
 TEST(OperatorsAgainstTheRenderer, PairOperatorMakesTheSameLight) {
     const std::vector<Vec3> points{
         {-0.4, 0.3, 0.0}, {-0.1, 0.0, 0.0}, {0.2, -0.3, 0.0}, {0.4, 0.1, 0.0}};
-    for (const core::Scan& scan : {test_support::confocal_scan(points),
-                                   test_support::single_scan({0.0, 0.2, 0.0}, points),
-                                   test_support::exhaustive_scan(points, points)}) {
+    for (const core::WallScan& scan : {test_support::confocal_scan(points),
+                                       test_support::single_scan({0.0, 0.2, 0.0}, points),
+                                       test_support::exhaustive_scan(points, points)}) {
         const double diffuse = pair_operator_error(Falloff::Diffuse, scan);
         const double facing = pair_operator_error(Falloff::Facing, scan);
         EXPECT_LT(diffuse, 0.03);
@@ -127,12 +132,12 @@ TEST(OperatorsAgainstTheRenderer, PairOperatorMakesTheSameLight) {
 /// The operators' light of a square over the renderer's, up to a common factor, which the
 /// convolution's unit norm leaves open. Columns 0.04 m apart show three of them as 0.12 m.
 double cone_operators_error(Falloff falloff) {
-    core::Scan scan;
+    core::WallScan scan;
     scan.pattern = core::ScanPattern::Confocal;
     scan.sensing = nlos_test::wall_grid({24, 24}, {0.04, 0.04});
     scan.illumination = scan.sensing;
     const core::Capture capture = render_square(scan, 0.12, {1.2, 0.016, 64});
-    const WallFrame wall = derive_wall_frame(capture.scan);
+    const WallFrame wall = derive_wall_frame(capture.scan.wall());
     const core::Progress progress;
     const VolumeAxes axes{
         std::vector<double>(24), std::vector<double>(24), {0.7}, wall.world_from_wall};

@@ -187,7 +187,7 @@ TEST(ConnectionTechnique, LobesOfGlossyVerticesMeetWhatTheyMirror) {
         test_support::parallelogram_object({Vec3(-1, -1, 0), Vec3(2, 0, 0), Vec3(0, 2, 0)}));
     geometry.objects.push_back(
         test_support::parallelogram_object({Vec3(1, -1, 0), Vec3(0, 2, 0), Vec3(0, 0, 2)}));
-    const core::Scan scan = test_support::confocal_scan({Vec3(0, 0, 9)});
+    const core::WallScan scan = test_support::confocal_scan({Vec3(0, 0, 9)});
     const Scene scene(std::move(geometry), scan, {});
     const auto technique = technique_of(scene);
     renderer::PathVertex vertex;

@@ -25,11 +25,11 @@ struct FewPairs {
         : seed(test_support::seed_of(name)),
           description(renderer::read_scene_description(
               std::string(NLOS_SOURCE_DIR) + "/scenes/" + name + "/scene.json", {})),
-          scan(four_points(renderer::make_scan(description))),
+          scan(four_points(renderer::make_scan(description).wall())),
           scene(renderer::load_scene(description, scan)),
           axis{0.4, 0.1, 40} {}
 
-    static core::Scan four_points(core::Scan scan) {
+    static core::WallScan four_points(core::WallScan scan) {
         core::WallPoints few;
         for (int i = 0; i < 4; ++i) {
             const std::size_t index =
@@ -57,7 +57,7 @@ struct FewPairs {
 
     std::uint64_t seed;
     renderer::SceneDescription description;
-    core::Scan scan;
+    core::WallScan scan;
     renderer::Scene scene;
     core::TimeAxis axis;
 };
@@ -218,14 +218,12 @@ void expect_images_to_agree(const std::vector<renderer::Object>& objects,
                             const std::vector<core::TimeAxis>& axes,
                             RenderSettings settings) {
     for (const bool spot : {false, true}) {
-        core::Scan scan;
-        scan.pattern = core::ScanPattern::Single;
-        scan.opl_origin = core::OplOrigin::Device;
-        scan.camera.emplace();
-        scan.camera->position_m = Vec3(0.3, 0.2, -2.0);
-        scan.camera->look_at_m = Vec3(0, -0.2, 0);
-        scan.camera->resolution = {2, 2};
-        if (spot) scan.camera->light_spot_m = Vec3(-0.5, -1.0, 0.3);
+        core::PinholeCamera camera;
+        camera.position_m = Vec3(0.3, 0.2, -2.0);
+        camera.look_at_m = Vec3(0, -0.2, 0);
+        camera.resolution = {2, 2};
+        if (spot) camera.light_spot_m = Vec3(-0.5, -1.0, 0.3);
+        const core::Scan scan = core::ImageScan{camera};
         const renderer::Scene scene({objects, {}}, scan, {});
         settings.max_bounces = 4;
         settings.variance = true;

@@ -28,7 +28,7 @@ TEST(ExcludedFacets, AreThoseOfWallsFlaggedObjectsAndLargeFacets) {
     add("large", 1.0);
     add("back", 0.1).role = renderer::Role::BackWall;
     add("flagged", 0.1).ellipsoidal_exclude = true;
-    const core::Scan scan = test_support::confocal_scan({Vec3::Zero()});
+    const core::WallScan scan = test_support::confocal_scan({Vec3::Zero()});
     const Scene scene(std::move(geometry), scan, renderer::RelayWall{});
     renderer::RenderSettings settings;
     const core::TimeAxis axis{0.0, 0.01, 100};
@@ -60,7 +60,7 @@ TEST(ExcludedFacets, OfModeMisAreConnectedToInGatesShorterThanTheyAreWide) {
         geometry.objects.back().name = size > 1.0 ? "wall" : "panel";
         geometry.objects.back().role = renderer::Role::BackWall;
     }
-    const core::Scan scan = test_support::confocal_scan({Vec3::Zero()});
+    const core::WallScan scan = test_support::confocal_scan({Vec3::Zero()});
     const Scene scene(std::move(geometry), scan, renderer::RelayWall{});
     renderer::RenderSettings settings;
     using Names = std::vector<std::string>;
@@ -102,7 +102,8 @@ TEST(ExcludedFacets, TakeDrawsFromCurvedRelayWallsAlone) {
                  Vec3(0, 2, 0)}));
             geometry.objects.back().role = renderer::Role::RelayWall;
         }
-        const core::Scan scan = test_support::confocal_scan({Vec3(0.5, 0.1, curved ? 0.25 : 0.0)});
+        const core::WallScan scan =
+            test_support::confocal_scan({Vec3(0.5, 0.1, curved ? 0.25 : 0.0)});
         const Vec3 normal = curved ? Vec3(-0.5, 0, 1).normalized() : Vec3(Vec3::UnitZ());
         const Scene scene(std::move(geometry), scan, renderer::RelayWall{});
         renderer::RenderSettings settings;

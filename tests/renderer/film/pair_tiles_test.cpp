@@ -103,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(ScansAndMemory,
 
 // Elements, lights and sensors of a scan larger than a few tiles.
 struct TwoSheets {
-    core::Scan scan = [] {
+    core::WallScan scan = [] {
         std::vector<Vec3> points;
         for (int i = 0; i < 40; ++i) {
             points.emplace_back(-0.4 + 0.1 * (i % 8), -0.4 + 0.1 * (i / 8), 0.0);

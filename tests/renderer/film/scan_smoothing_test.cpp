@@ -11,8 +11,8 @@
 
 namespace {
 
-core::Scan confocal_grid(std::size_t x, std::size_t y) {
-    core::Scan scan;
+core::WallScan confocal_grid(std::size_t x, std::size_t y) {
+    core::WallScan scan;
     scan.illumination = test_support::example_grid(x, y);
     scan.sensing = scan.illumination;
     return scan;
@@ -54,7 +54,7 @@ core::Transient with_noise(core::Transient truth, double deviation, std::uint64_
 }
 
 TEST(ScanSmoothing, SpreadsAnImpulseAsTriangles) {
-    const core::Scan scan = confocal_grid(9, 7);
+    const core::WallScan scan = confocal_grid(9, 7);
     core::Transient impulse(63, 16);
     impulse.histogram(4 * 7 + 3)[8] = 1.0F;
     const core::Transient smooth = renderer::smooth_scan(impulse, scan, {3, 2});
@@ -74,7 +74,7 @@ TEST(ScanSmoothing, SpreadsAnImpulseAsTriangles) {
 }
 
 TEST(ScanSmoothing, KeepsTheSumAtEveryBorder) {
-    core::Scan exhaustive;
+    core::WallScan exhaustive;
     exhaustive.pattern = core::ScanPattern::Exhaustive;
     exhaustive.illumination = test_support::example_grid(3, 4);
     exhaustive.sensing = test_support::example_grid(5, 2);
@@ -89,7 +89,7 @@ TEST(ScanSmoothing, KeepsTheSumAtEveryBorder) {
 }
 
 TEST(ScanSmoothing, PointsOfAListHaveNoNeighbours) {
-    core::Scan scan = confocal_grid(4, 4);
+    core::WallScan scan = confocal_grid(4, 4);
     scan.sensing = test_support::as_list(scan.sensing);
     const core::Transient values = with_noise(core::Transient(16, 32), 1.0, 1);
     EXPECT_EQ(squared_distance(renderer::smooth_scan(values, scan, {4, 1}), values), 0.0);
@@ -101,7 +101,7 @@ TEST(ScanSmoothing, PointsOfAListHaveNoNeighbours) {
 TEST(ScanSmoothing, ChoosesWidthsByTheTrueError) {
     constexpr std::size_t kSide = 16;
     constexpr int kBins = 64;
-    const core::Scan scan = confocal_grid(kSide, kSide);
+    const core::WallScan scan = confocal_grid(kSide, kSide);
     struct Case {
         double width;
         double noise;
@@ -135,7 +135,7 @@ TEST(ScanSmoothing, ChoosesWidthsByTheTrueError) {
 }
 
 TEST(ScanSmoothing, SignalCountsWhatIsKnownBefore) {
-    const core::Scan scan = confocal_grid(4, 4);
+    const core::WallScan scan = confocal_grid(4, 4);
     core::Transient known(16, 8);
     for (float& value : known.values()) value = 3.0F;
     core::Transient sampled(16, 8);

@@ -30,7 +30,7 @@ renderer::RenderSettings settings_with(int samples) {
     return settings;
 }
 
-core::Capture render_posed(const core::Scan& scan,
+core::Capture render_posed(const core::WallScan& scan,
                            const Transform& pose,
                            const core::TimeAxis& axis,
                            const renderer::RenderSettings& settings) {
@@ -43,7 +43,7 @@ core::Capture render_posed(const core::Scan& scan,
     wall.center_m = pose * wall.center_m;
     wall.normal = pose.linear() * wall.normal;
     wall.up = pose.linear() * wall.up;
-    core::Scan posed = scan;
+    core::WallScan posed = scan;
     for (core::WallPoints* points : {&posed.sensing, &posed.illumination}) {
         for (Vec3& position : points->positions) position = pose * position;
         for (Vec3& normal : points->normals) normal = pose.linear() * normal;
@@ -54,7 +54,7 @@ core::Capture render_posed(const core::Scan& scan,
     return renderer::render(scene, posed, axis, settings, {}).capture;
 }
 
-core::Capture render_plain(const core::Scan& scan,
+core::Capture render_plain(const core::WallScan& scan,
                            const core::TimeAxis& axis,
                            const renderer::RenderSettings& settings) {
     return render_posed(scan, Transform::Identity(), axis, settings);
@@ -68,7 +68,7 @@ TEST(PathTracer, RotatedAndTranslatedSetUpGivesTheSameTransient) {
     pose.pretranslate(Vec3(1000.0, -300.0, 650.0));
     renderer::RenderSettings settings = settings_with(4000);
     settings.max_bounces = 3;
-    const core::Scan scan = test_support::confocal_scan(kThreeWallPoints);
+    const core::WallScan scan = test_support::confocal_scan(kThreeWallPoints);
     const core::TimeAxis axis{1.0, 0.008, 512};
     const auto plain = render_plain(scan, axis, settings);
     const auto posed = render_posed(scan, pose, axis, settings);
@@ -76,7 +76,7 @@ TEST(PathTracer, RotatedAndTranslatedSetUpGivesTheSameTransient) {
 }
 
 TEST(PathTracer, DeviceOriginShiftsHistogramsByTheLegs) {
-    core::Scan scan = test_support::single_scan(Vec3(0.1, 0.2, 0.0), {kThreeWallPoints[0]});
+    core::WallScan scan = test_support::single_scan(Vec3(0.1, 0.2, 0.0), {kThreeWallPoints[0]});
     const auto wall_origin = render_plain(scan, kInvarianceAxis, settings_with(2000));
     scan.opl_origin = core::OplOrigin::Device;
     scan.laser_position = Vec3(-0.5, 0.1, 0.25);
@@ -127,7 +127,7 @@ TEST(PathTracer, PatternsAgreeWherePairsCoincide) {
 TEST(PathTracer, TilesGiveTheSameBitsAsTheWholeScan) {
     renderer::SceneGeometry geometry;
     geometry.objects.push_back(test_support::parallelogram_object(kTiltedPanel));
-    const core::Scan scan = test_support::exhaustive_scan(kThreeWallPoints, kThreeWallPoints);
+    const core::WallScan scan = test_support::exhaustive_scan(kThreeWallPoints, kThreeWallPoints);
     const renderer::Scene scene(std::move(geometry), scan, renderer::RelayWall{});
     renderer::RenderSettings settings = settings_with(100);
     settings.by_order = true;
@@ -156,7 +156,7 @@ TEST(PathTracer, DirectReturnIsTheLitSpotAfterTheDeviceLegs) {
     settings.by_order = true;
     settings.direct_return = true;
     settings.laser_spot_m2 = 2e-4;
-    core::Scan scan = test_support::confocal_scan({kThreeWallPoints[0]});
+    core::WallScan scan = test_support::confocal_scan({kThreeWallPoints[0]});
     scan.opl_origin = core::OplOrigin::Device;
     scan.laser_position = scan.detector_position = Vec3(0.0, 0.0, 1.0);
     const core::TimeAxis axis{0.0, 0.02, 200};
@@ -190,7 +190,7 @@ TEST(PathTracer, SwappingLightAndSensorGivesTheSameEnergyPerOrder) {
 // own frame, must not be asked.
 TEST(SurfaceWalk, StepsWithinAPlaneCarryNothing) {
     core::Rng rng(test_support::seed_of("SurfaceWalk"), 0, 0);
-    const core::Scan scan = test_support::confocal_scan(kThreeWallPoints);
+    const core::WallScan scan = test_support::confocal_scan(kThreeWallPoints);
     for (int i = 0; i < 100; ++i) {
         const Parallelogram shape{Vec3(-0.3, -0.2, 0.6),
                                   Vec3(0.5, rng.uniform(), 0.4 * rng.uniform()),

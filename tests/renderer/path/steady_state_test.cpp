@@ -93,7 +93,7 @@ TEST(PathTracer, EnergyOfEveryOrderMatchesARadiositySolution) {
     renderer::RelayWall wall;
     wall.size_m = {0.6, 0.6};
     wall.albedo = kWall.albedo;
-    const core::Scan scan = test_support::single_scan(kLight, {kSensor});
+    const core::WallScan scan = test_support::single_scan(kLight, {kSensor});
     const renderer::Scene scene(std::move(geometry), scan, wall);
     renderer::RenderSettings settings;
     settings.method = renderer::Estimator::Path;

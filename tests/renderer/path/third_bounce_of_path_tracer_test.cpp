@@ -30,7 +30,7 @@ renderer::RenderSettings path_settings(const std::string& test, int samples) {
 }
 
 renderer::Scene scene_of(const std::vector<Parallelogram>& shapes,
-                         const core::Scan& scan,
+                         const core::WallScan& scan,
                          double wall_albedo) {
     renderer::SceneGeometry geometry;
     for (const Parallelogram& shape : shapes) {
@@ -48,7 +48,7 @@ TEST(PathTracer, LargeParallelPlaneMatchesTheClosedForm) {
     constexpr double kDepth = 0.5;
     constexpr double kAlbedo = 0.7;
     constexpr double kWallAlbedo = 0.9;
-    const core::Scan scan = test_support::confocal_scan({Vec3::Zero()});
+    const core::WallScan scan = test_support::confocal_scan({Vec3::Zero()});
     const core::TimeAxis axis{0.99, 0.025, 20};
     const renderer::Scene scene = scene_of(
         {{Vec3(-1, -1, kDepth), Vec3(2, 0, 0), Vec3(0, 2, 0), kAlbedo}}, scan, kWallAlbedo);
@@ -72,7 +72,7 @@ TEST(PathTracer, LargeParallelPlaneMatchesTheClosedForm) {
 
 class ThirdBouncePatterns : public testing::TestWithParam<core::ScanPattern> {
  protected:
-    core::Scan scan() const {
+    core::WallScan scan() const {
         if (GetParam() == core::ScanPattern::Confocal)
             return test_support::confocal_scan(kThreeWallPoints);
         if (GetParam() == core::ScanPattern::Single) {
@@ -85,7 +85,7 @@ class ThirdBouncePatterns : public testing::TestWithParam<core::ScanPattern> {
 
 TEST_P(ThirdBouncePatterns, OccludedTiltedRectangleMatchesBruteForce) {
     const core::TimeAxis axis{1.2, 0.02, 40};
-    const core::Scan pairs = scan();
+    const core::WallScan pairs = scan();
     const auto expected = test_support::third_bounce_by_quadrature(
         kTiltedPanel, kBlackScreen, pairs, axis, 0.8, /*steps=*/1500);
     // The occluder is black: it hides and adds nothing.
@@ -115,7 +115,7 @@ TEST_P(ThirdBouncePatterns, OccludedTiltedRectangleMatchesBruteForce) {
 
 TEST_P(ThirdBouncePatterns, SameBitsForAnyNumberOfThreads) {
     const core::TimeAxis axis{1.2, 0.02, 40};
-    const core::Scan pairs = scan();
+    const core::WallScan pairs = scan();
     const renderer::Scene scene = scene_of({kTiltedPanel, kBlackScreen}, pairs, 0.8);
     renderer::RenderSettings settings = path_settings("SameBits", 300);
     settings.max_bounces = 5;
@@ -138,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(AllPatterns,
 
 // Of eight passes. Who listens slowly is asked after each; the others after rounds of several.
 TEST(PathTracer, InterruptedRenderKeepsWholePasses) {
-    const core::Scan scan = test_support::confocal_scan(kThreeWallPoints);
+    const core::WallScan scan = test_support::confocal_scan(kThreeWallPoints);
     const renderer::Scene scene = scene_of({kTiltedPanel}, scan, 1.0);
     const core::TimeAxis axis{1.2, 0.02, 40};
     const renderer::RenderSettings settings = path_settings("Interrupted", 800);
@@ -164,7 +164,7 @@ TEST(PathTracer, InterruptedRenderKeepsWholePasses) {
 }
 
 TEST(PathTracer, GateWeightsPathsByLength) {
-    const core::Scan scan = test_support::confocal_scan({Vec3::Zero()});
+    const core::WallScan scan = test_support::confocal_scan({Vec3::Zero()});
     // A tiny patch: one path length, 1.0 m.
     const renderer::Scene scene =
         scene_of({{Vec3(-1e-4, -1e-4, 0.5), Vec3(2e-4, 0, 0), Vec3(0, 2e-4, 0)}}, scan, 1.0);
@@ -185,9 +185,9 @@ TEST(PathTracer, GateWeightsPathsByLength) {
 TEST(PathTracer, RetroreflectorReturnsTheSpotOfConfocalPairsOnly) {
     constexpr double kSpot = 2e-4;
     for (const bool confocal : {true, false}) {
-        const core::Scan scan = confocal
-                                    ? test_support::confocal_scan({Vec3::Zero()})
-                                    : test_support::single_scan(Vec3(0.2, 0, 0), {Vec3::Zero()});
+        const core::WallScan scan =
+            confocal ? test_support::confocal_scan({Vec3::Zero()})
+                     : test_support::single_scan(Vec3(0.2, 0, 0), {Vec3::Zero()});
         renderer::SceneGeometry geometry;
         geometry.objects.push_back(test_support::parallelogram_object(
             {Vec3(-1e-4, -1e-4, 0.5), Vec3(2e-4, 0, 0), Vec3(0, 2e-4, 0), 0.9}));

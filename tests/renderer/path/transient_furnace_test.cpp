@@ -90,7 +90,7 @@ class Furnace {
     std::vector<std::vector<double>> pass_totals_;
 };
 
-renderer::Scene sphere_scene(const core::Scan& scan) {
+renderer::Scene sphere_scene(const core::WallScan& scan) {
     renderer::SceneGeometry geometry;
     geometry.objects.push_back(
         test_support::sphere_object(Vec3::Zero(), kRadius, kSubdivisions, kAlbedo));
@@ -98,7 +98,7 @@ renderer::Scene sphere_scene(const core::Scan& scan) {
 }
 
 // A scan that has nothing to do with the sphere, for scenes that are traced from other ends.
-core::Scan far_scan() {
+core::WallScan far_scan() {
     return test_support::confocal_scan({Vec3(10, 0, 0)});
 }
 
@@ -177,7 +177,7 @@ TEST(TransientFurnace, PointsOnTheSphere) {
     const core::WallPoints a = point_on_sphere(Vec3(0.3, 0.5, 0.8).normalized());
     const core::WallPoints b = point_on_sphere(Vec3(-0.6, 0.4, 0.1).normalized());
     for (const bool confocal : {true, false}) {
-        core::Scan scan;
+        core::WallScan scan;
         scan.sensing = a;
         scan.illumination = confocal ? a : b;
         const renderer::Scene scene = sphere_scene(scan);
@@ -199,7 +199,7 @@ TEST(TransientFurnace, PointsOnTheSphere) {
 
 TEST(TransientFurnace, ThirdBounceOfAConfocalPointIsALinearRamp) {
     const core::WallPoints point = point_on_sphere(Vec3(0.3, 0.5, 0.8).normalized());
-    core::Scan scan;
+    core::WallScan scan;
     scan.sensing = scan.illumination = point;
     const renderer::Scene scene = sphere_scene(scan);
     const renderer::PathEndpoints ends{wall_end(point), wall_end(point), 0.0, /*coincide=*/true};
@@ -220,7 +220,7 @@ TEST(TransientFurnace, ThirdBounceOfAConfocalPointIsALinearRamp) {
 // Through the front door, independent seeds: totals and mean lengths of orders 3 to 5 by t-test.
 TEST(TransientFurnace, FrontDoorGivesTotalsAndMeansOfEveryOrder) {
     constexpr int kSeeds = 20;
-    core::Scan scan;
+    core::WallScan scan;
     scan.pattern = core::ScanPattern::Single;
     scan.sensing = point_on_sphere(Vec3(0.3, 0.5, 0.8).normalized());
     scan.illumination = point_on_sphere(Vec3(-0.6, 0.4, 0.1).normalized());
@@ -268,7 +268,7 @@ TEST(TransientFurnace, FrontDoorGivesTotalsAndMeansOfEveryOrder) {
 
 // Through the front door: order 2 is the straight way from point to point.
 TEST(TransientFurnace, FrontDoorAddsTheStraightWay) {
-    core::Scan scan;
+    core::WallScan scan;
     scan.pattern = core::ScanPattern::Single;
     scan.sensing = point_on_sphere(Vec3(0.3, 0.5, 0.8).normalized());
     scan.illumination = point_on_sphere(Vec3(-0.6, 0.4, 0.1).normalized());

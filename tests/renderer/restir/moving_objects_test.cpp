@@ -19,7 +19,7 @@ using test_support::Numbers;
 // Three balls, each with a motion of its own. Shifts by ray find other balls than the one they
 // start from.
 struct BallsMovingApart {
-    core::Scan scan = [] {
+    core::WallScan scan = [] {
         std::vector<Vec3> points;
         for (int i = 0; i < 9; ++i) {
             points.emplace_back(-0.3 + 0.2 * (i % 3), -0.2 + 0.2 * (i / 3), 0.0);

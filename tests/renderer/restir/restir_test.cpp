@@ -64,19 +64,15 @@ core::Scan image() {
     camera.look_at_m = Vec3(0.05, 0, 0.8);
     camera.light_m = Vec3(-0.3, 0.3, -0.1);
     camera.resolution = {4, 4};
-    core::Scan scan;
-    scan.pattern = core::ScanPattern::Single;
-    scan.opl_origin = core::OplOrigin::Device;
-    scan.camera = camera;
-    return scan;
+    return core::ImageScan{camera};
 }
 
 // All pixels see one surface, and no edge crosses them.
 core::Scan close_up() {
-    core::Scan scan = image();
-    scan.camera->look_at_m = Vec3(0.08, 0.12, 0.83);
-    scan.camera->fov_y_deg = 1.5;
-    return scan;
+    core::PinholeCamera camera = image().as<core::ImageScan>()->camera;
+    camera.look_at_m = Vec3(0.08, 0.12, 0.83);
+    camera.fov_y_deg = 1.5;
+    return core::ImageScan{camera};
 }
 
 renderer::RenderSettings restir_settings(Estimator method, int samples, int max_bounces) {

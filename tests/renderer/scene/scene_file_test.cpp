@@ -60,7 +60,7 @@ TEST(SceneFile, AllKeysOfTheFormatAreRead) {
 TEST(SceneFile, GridPointsAreCellCentresXFirst) {
     const auto scene = read_text(
         R"({"geometry": "a.glb", "relay_wall": {"size_m": [2, 1]}, "scan": {"sensing_points": [4, 2]}})");
-    const core::Scan scan = renderer::make_scan(scene);
+    const core::WallScan scan = renderer::make_scan(scene).wall();
     ASSERT_EQ(scan.sensing.size(), 8U);
     EXPECT_LT((scan.sensing.positions[0] - Vec3(-0.75, -0.25, 0)).norm(), 1e-12);
     EXPECT_LT((scan.sensing.positions[1] - Vec3(-0.75, 0.25, 0)).norm(), 1e-12);
@@ -82,13 +82,13 @@ TEST(SceneFile, WallFrameHasXAlongUpCrossNormal) {
 TEST(SceneFile, PatternsPairPointsAsStated) {
     auto scene = read_text(R"({"geometry": "a.glb", "scan": {"pattern": "exhaustive",
         "sensing_points": [3, 2], "illumination_points": [2, 2]}})");
-    core::Scan scan = renderer::make_scan(scene);
+    core::WallScan scan = renderer::make_scan(scene).wall();
     EXPECT_EQ(scan.num_pairs(), 24U);
     EXPECT_EQ(scan.illumination_index(13), 2U);
     EXPECT_EQ(scan.sensing_index(13), 1U);
     scene = read_text(R"({"geometry": "a.glb", "scan": {"pattern": "single",
         "illumination_m": [0.1, 0.2, 0], "sensing_points": [3, 2]}})");
-    scan = renderer::make_scan(scene);
+    scan = renderer::make_scan(scene).wall();
     EXPECT_EQ(scan.num_pairs(), 6U);
     EXPECT_EQ(scan.illumination.positions[scan.illumination_index(5)], Vec3(0.1, 0.2, 0));
 }
@@ -96,7 +96,7 @@ TEST(SceneFile, PatternsPairPointsAsStated) {
 TEST(SceneFile, ExplicitPointsReplaceTheGridAndNormalsAreNormalised) {
     const auto scene = read_text(R"({"geometry": "a.glb", "scan": {
         "sensing_points_m": [[0, 0, 0], [1, 0, 0.5]], "sensing_normals": [[0, 0, 2], [0, 1, 1]]}})");
-    const core::Scan scan = renderer::make_scan(scene);
+    const core::WallScan scan = renderer::make_scan(scene).wall();
     ASSERT_EQ(scan.sensing.size(), 2U);
     EXPECT_FALSE(scan.sensing.grid);
     EXPECT_NEAR(scan.sensing.normals[1].norm(), 1.0, 1e-12);
@@ -130,12 +130,14 @@ TEST(SceneFile, CameraTakesThePlaceOfTheScan) {
     const auto scene = read_text(R"({"geometry": "a.glb", "camera": { "position_m": [0, 1, -2],
         "look_at_m": [0, 0, 1], "up": [0, 1, 0], "fov_y_deg": 50, "resolution": [20, 10],
         "light_spot_m": [0.5, 0, 1] }})");
-    const core::Scan scan = renderer::make_scan(scene);
-    ASSERT_TRUE(scan.camera.has_value());
-    EXPECT_EQ(scan.num_pairs(), 200U);
-    EXPECT_EQ(scan.detector_position, Vec3(0, 1, -2));
-    EXPECT_EQ(scan.laser_position, Vec3(0.5, 0, 1));
-    EXPECT_EQ(scan.camera->fov_y_deg, 50.0);
+    const core::Scan made = renderer::make_scan(scene);
+    EXPECT_EQ(made.name(), "camera");
+    EXPECT_FALSE(made.has_wall());
+    EXPECT_EQ(made.num_pairs(), 200U);
+    EXPECT_EQ(made.devices().detector, Vec3(0, 1, -2));
+    EXPECT_EQ(made.devices().laser, Vec3(0.5, 0, 1));
+    ASSERT_NE(made.as<core::ImageScan>(), nullptr);
+    EXPECT_EQ(made.as<core::ImageScan>()->camera.fov_y_deg, 50.0);
 }
 
 TEST(SceneFile, CameraLightIsAtTheCameraUnlessSet) {

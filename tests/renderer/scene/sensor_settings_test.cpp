@@ -33,11 +33,12 @@ renderer::SceneDescription read_sensor_scene(const core::Json& json,
 
 TEST(SensorSettings, ScanIsThatOfTheZones) {
     const auto scene = read_sensor_scene(sensor_scene_with({{"subsamples", 2}}));
-    const core::Scan scan = renderer::make_scan(scene);
-    ASSERT_TRUE(scan.sensor);
+    const core::Scan made = renderer::make_scan(scene);
+    ASSERT_NE(made.as<core::SensorScan>(), nullptr);
+    const core::SensorScan& scan = *made.as<core::SensorScan>();
     EXPECT_EQ(scan.num_pairs(), 16U);
     EXPECT_EQ(scan.pattern, core::ScanPattern::Confocal);
-    EXPECT_EQ(scan.sensor->subsamples, 2);
+    EXPECT_EQ(scan.setup->subsamples, 2);
     EXPECT_EQ(scan.detector_position, core::Vec3(0.1, 0.0, 1.0));
     EXPECT_NEAR(scan.laser_position.x(), 0.104, 1e-12);
     EXPECT_EQ(scan.opl_origin, core::OplOrigin::Device);

@@ -37,7 +37,7 @@ renderer::Object fine_sheet(const Parallelogram& shape, std::uint32_t cells) {
     return object;
 }
 
-core::Scan grid_scan() {
+core::WallScan grid_scan() {
     std::vector<Vec3> points;
     for (int i = 0; i < 6; ++i) {
         for (int j = 0; j < 6; ++j) points.emplace_back(0.15 * i - 0.375, 0.15 * j - 0.375, 0.0);
@@ -45,7 +45,7 @@ core::Scan grid_scan() {
     return test_support::confocal_scan(points);
 }
 
-renderer::Scene scene_of(std::vector<renderer::Object> objects, const core::Scan& scan) {
+renderer::Scene scene_of(std::vector<renderer::Object> objects, const core::WallScan& scan) {
     return {{std::move(objects), {}}, scan, renderer::RelayWall{}};
 }
 
@@ -187,7 +187,7 @@ TEST(ElementClusters, ClustersKeepToTheirSizeTiltAndObject) {
 }
 
 renderer::ThirdBounce integrate(const renderer::Scene& scene,
-                                const core::Scan& scan,
+                                const core::WallScan& scan,
                                 const core::TimeAxis& axis,
                                 double target) {
     renderer::RenderSettings settings;
@@ -196,7 +196,7 @@ renderer::ThirdBounce integrate(const renderer::Scene& scene,
 }
 
 void expect_targets_met(const renderer::Scene& scene,
-                        const core::Scan& scan,
+                        const core::WallScan& scan,
                         const core::TimeAxis& axis,
                         const renderer::ThirdBounce& reference,
                         std::size_t most_elements) {

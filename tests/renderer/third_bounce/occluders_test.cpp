@@ -104,7 +104,7 @@ const renderer::CutLimits kSmallLimits{.in_all = 500'000, .in_a_batch = 100'000}
 // Where the usual reference has too many elements, a nearer one serves: its error is no smaller
 // than a third of the next coarser level's, and at most that.
 TEST(ThirdBounceBehindOccluders, ErrorsAreKnownUpToTheLastLevelButOne) {
-    const core::Scan scan = test_support::confocal_scan({Vec3(0.0, 0.0, 0.0)});
+    const core::WallScan scan = test_support::confocal_scan({Vec3(0.0, 0.0, 0.0)});
     const renderer::Scene scene(wide_sheet(), scan, {});
     renderer::PilotRuns pilots(scene, scan, {0.9, 0.05, 20}, 1e-4, 0.0, kSmallLimits);
     const auto fits = [&](int level) { return failure_of([&] { pilots.run(level); }).empty(); };
@@ -119,7 +119,7 @@ TEST(ThirdBounceBehindOccluders, ErrorsAreKnownUpToTheLastLevelButOne) {
 
 // The first cut already has too many elements.
 TEST(ThirdBounceBehindOccluders, TargetsOutOfReachNameOneThatIsNot) {
-    const core::Scan scan = test_support::confocal_scan({Vec3(0.0, 0.0, 0.0)});
+    const core::WallScan scan = test_support::confocal_scan({Vec3(0.0, 0.0, 0.0)});
     const renderer::Scene scene(wide_sheet(), scan, {});
     renderer::RenderSettings settings;
     settings.method = renderer::Estimator::ThirdBounce;

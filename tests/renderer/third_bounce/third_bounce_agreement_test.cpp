@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // Path tracing alone and auto, which traces paths only for what it cannot integrate.
 TEST(AutoMethod, AddsPathsForNarrowLobesAndHigherOrders) {
-    const core::Scan scan = test_support::confocal_scan({{-0.2, 0.1, 0.0}, {0.1, 0.0, 0.0}});
+    const core::WallScan scan = test_support::confocal_scan({{-0.2, 0.1, 0.0}, {0.1, 0.0, 0.0}});
     renderer::SceneGeometry geometry;
     geometry.objects.push_back(test_support::parallelogram_object(
         {Vec3(-0.3, -0.2, 0.6), Vec3(0.3, 0, 0), Vec3(0, 0.4, 0), 0.8}));

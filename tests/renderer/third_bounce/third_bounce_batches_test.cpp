@@ -31,8 +31,8 @@ TEST(ThirdBounceScenes, InterruptedRenderIsCompleteButCoarser) {
         }
         return points;
     };
-    for (const core::Scan& scan : {test_support::confocal_scan(grid(20, 20)),
-                                   test_support::exhaustive_scan(grid(8, 4), grid(8, 8))}) {
+    for (const core::WallScan& scan : {test_support::confocal_scan(grid(20, 20)),
+                                       test_support::exhaustive_scan(grid(8, 4), grid(8, 8))}) {
         const renderer::Scene scene = scene_of(geometry_of({kTiltedPanel, kBlackScreen}), scan);
         const auto whole = renderer::render(scene, scan, kAxis, settings_for(1e-3), {});
         for (const int patience : {1, 4}) {
@@ -52,7 +52,7 @@ TEST(ThirdBounceScenes, InterruptedRenderIsCompleteButCoarser) {
 
 // Where so few points are left that they are integrated at once, too.
 TEST(ThirdBounceScenes, RenderInterruptedBeforeItBeginsSaysSo) {
-    const core::Scan scan = test_support::confocal_scan(kThreeWallPoints);
+    const core::WallScan scan = test_support::confocal_scan(kThreeWallPoints);
     const renderer::Scene scene = scene_of(geometry_of({kTiltedPanel, kBlackScreen}), scan);
     core::Progress progress;
     progress.stop_requested = [] { return true; };
@@ -65,7 +65,7 @@ TEST(ThirdBounceScenes, RenderInterruptedBeforeItBeginsSaysSo) {
 
 // The third bounce with at most so many elements in a batch.
 renderer::ThirdBounce integrate_by_batches(const std::vector<Parallelogram>& shapes,
-                                           const core::Scan& scan,
+                                           const core::WallScan& scan,
                                            const renderer::RenderSettings& settings,
                                            std::size_t in_a_batch) {
     return integrate_third_bounce(scene_of(geometry_of(shapes), scan),
@@ -102,7 +102,7 @@ TEST_P(ThirdBounce, BatchesOfElementsKeepTheTarget) {
 
 // No pair is complete before the last batch.
 TEST(ThirdBounceScenes, InterruptedBetweenBatchesItIsCompleteButCoarser) {
-    const core::Scan scan = test_support::confocal_scan(kThreeWallPoints);
+    const core::WallScan scan = test_support::confocal_scan(kThreeWallPoints);
     const renderer::Scene scene = scene_of(geometry_of({kTiltedPanel, kBlackScreen}), scan);
     const auto integrate = [&](const core::Progress& progress) {
         return integrate_third_bounce(scene,

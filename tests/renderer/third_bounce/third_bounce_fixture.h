@@ -24,7 +24,7 @@ inline renderer::SceneGeometry geometry_of(const std::vector<test_support::Paral
     return geometry;
 }
 
-inline renderer::Scene scene_of(renderer::SceneGeometry geometry, const core::Scan& scan) {
+inline renderer::Scene scene_of(renderer::SceneGeometry geometry, const core::WallScan& scan) {
     renderer::RelayWall wall;
     wall.albedo = kWallAlbedo;
     return {std::move(geometry), scan, wall};
@@ -38,7 +38,7 @@ inline renderer::RenderSettings settings_for(double target_error) {
 }
 
 inline std::vector<float> render_shapes(const std::vector<test_support::Parallelogram>& shapes,
-                                        const core::Scan& scan,
+                                        const core::WallScan& scan,
                                         const core::TimeAxis& axis,
                                         double target_error) {
     const auto result = renderer::render(
@@ -50,7 +50,7 @@ inline std::vector<float> render_shapes(const std::vector<test_support::Parallel
 /// The scan of three wall points that each pattern makes.
 class ThirdBounce : public testing::TestWithParam<core::ScanPattern> {
  protected:
-    core::Scan scan() const {
+    core::WallScan scan() const {
         if (GetParam() == core::ScanPattern::Confocal)
             return test_support::confocal_scan(test_support::kThreeWallPoints);
         if (GetParam() == core::ScanPattern::Single) {

@@ -21,14 +21,14 @@ const Vec3 kB(0.0, 0.0, 0.0);
 const Vec3 kC(0.35, -0.25, 0.0);
 const core::TimeAxis kRetroAxis{0.8, 0.02, 60};
 
-renderer::Scene scene_of(const core::Scan& scan) {
+renderer::Scene scene_of(const core::WallScan& scan) {
     renderer::SceneGeometry geometry;
     geometry.objects.push_back(test_support::parallelogram_object(test_support::kTiltedPanel));
     geometry.objects.back().material.model = renderer::SurfaceModel::Retroreflective;
     return {std::move(geometry), scan, renderer::RelayWall{}};
 }
 
-core::Transient render(const core::Scan& scan, double target_error) {
+core::Transient render(const core::WallScan& scan, double target_error) {
     renderer::RenderSettings settings;
     settings.method = renderer::Estimator::ThirdBounce;
     settings.target_error = target_error;
@@ -59,7 +59,7 @@ TEST(Retroreflectors, ReturnLightToTheLaserPointOfSingleScans) {
 }
 
 TEST(Retroreflectors, AddAsMuchAsPathsDo) {
-    const core::Scan scan = test_support::exhaustive_scan({kA, kB}, {kC, kB, kA});
+    const core::WallScan scan = test_support::exhaustive_scan({kA, kB}, {kC, kB, kA});
     const core::Transient integrated = render(scan, 1e-3);
     renderer::RenderSettings settings;
     settings.method = renderer::Estimator::Path;
@@ -77,7 +77,7 @@ TEST(Retroreflectors, AddAsMuchAsPathsDo) {
 TEST(Retroreflectors, AreTriedInAPairThatSeesThem) {
     std::vector<Vec3> points;
     for (int i = 0; i < 200; ++i) points.emplace_back(0.005 * i - 0.5, 0.0, 0.0);
-    const auto is_tried = [](const core::Scan& scan) {
+    const auto is_tried = [](const core::WallScan& scan) {
         return CoincidingPoints(renderer::pilot_scan_for(scene_of(scan), scan, kRetroAxis.num_bins))
             .any();
     };
@@ -89,7 +89,7 @@ TEST(Retroreflectors, AreTriedInAPairThatSeesThem) {
 }
 
 TEST(CoincidingPoints, AreThoseOfBothListsWithTheSameNormals) {
-    core::Scan scan = test_support::exhaustive_scan({kA, kB, kB}, {kB, kC});
+    core::WallScan scan = test_support::exhaustive_scan({kA, kB, kB}, {kB, kC});
     const CoincidingPoints found(scan);
     EXPECT_EQ(found.illumination, (std::vector<bool>{false, true, true}));
     EXPECT_EQ(found.sensing, (std::vector<bool>{true, false}));

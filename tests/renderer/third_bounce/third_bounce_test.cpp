@@ -77,7 +77,7 @@ TEST_P(ThirdBounce, MovingEverythingByAKilometreChangesNothing) {
         shape.corner += shift;
         return shape;
     };
-    core::Scan far = scan();
+    core::WallScan far = scan();
     for (core::WallPoints* points : {&far.sensing, &far.illumination}) {
         for (Vec3& position : points->positions) position += shift;
     }
@@ -112,7 +112,7 @@ TEST_P(ThirdBounce, GateEqualsTheBinOfAHistogram) {
 }
 
 TEST_P(ThirdBounce, DeviceLegsShiftTheAxis) {
-    core::Scan scan_with_legs = scan();
+    core::WallScan scan_with_legs = scan();
     scan_with_legs.opl_origin = core::OplOrigin::Device;
     scan_with_legs.laser_position = Vec3(0.2, 0.0, 2.0);
     scan_with_legs.detector_position = Vec3(-0.2, 0.1, 2.0);
@@ -161,7 +161,7 @@ TEST_P(ThirdBounceOfHardFacets, MeetsItsTargetAgainstExactArcs) {
     geometry.objects[0].name = name;
     geometry.objects[0].mesh.vertices.assign(corners.begin(), corners.end());
     geometry.objects[0].mesh.triangles = {{0, 1, 2}};
-    const core::Scan scan = test_support::confocal_scan({Vec3::Zero()});
+    const core::WallScan scan = test_support::confocal_scan({Vec3::Zero()});
     const renderer::Scene scene = scene_of(std::move(geometry), scan);
     std::vector<float> expected;
     for (const double value : renderer::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis)) {
@@ -211,7 +211,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST(ThirdBounceScenes, FacetThatPiercesTheWallCountsInFrontOfItOnly) {
-    const core::Scan scan = test_support::confocal_scan(kThreeWallPoints);
+    const core::WallScan scan = test_support::confocal_scan(kThreeWallPoints);
     const Parallelogram piercing{
         Vec3(0.1, -0.1, -0.2), Vec3(0.02, 0.0, 0.4), Vec3(0.0, 0.2, 0.0), 1.0};
     const Parallelogram front{
@@ -224,7 +224,7 @@ TEST(ThirdBounceScenes, FacetThatPiercesTheWallCountsInFrontOfItOnly) {
 
 TEST(ThirdBounceScenes, ClosedObjectHidesItsBack) {
     // A closed box and its front face alone look the same from far in front.
-    const core::Scan scan = test_support::confocal_scan({Vec3::Zero()});
+    const core::WallScan scan = test_support::confocal_scan({Vec3::Zero()});
     renderer::SceneGeometry closed;
     closed.objects.emplace_back();
     auto& mesh = closed.objects[0].mesh;
@@ -262,7 +262,7 @@ TEST(ThirdBounceScenes, ShadowsWithinFacetsOfARoughBallCount) {
     }
     std::vector<Vec3> points;
     for (int i = 0; i < 25; ++i) points.emplace_back(0.2 * (i % 5) - 0.4, 0.2 * (i / 5) - 0.4, 0.0);
-    const core::Scan scan = test_support::confocal_scan(points);
+    const core::WallScan scan = test_support::confocal_scan(points);
     const core::TimeAxis axis{0.6, 0.02, 50};
     const renderer::Scene scene = scene_of(renderer::SceneGeometry{{ball}, {}}, scan);
     const auto sum = [&](const renderer::RenderSettings& settings) {
@@ -304,7 +304,7 @@ TEST(ThirdBounceScenes, PatternsAgreeOnTheSamePairs) {
 }
 
 TEST(ThirdBounceScenes, AGivenToleranceSparesPilotRunsAndLeavesTheErrorUnknown) {
-    const core::Scan scan = test_support::confocal_scan(kThreeWallPoints);
+    const core::WallScan scan = test_support::confocal_scan(kThreeWallPoints);
     const auto expected = test_support::third_bounce_by_quadrature(
         kTiltedPanel, kNoOccluder, scan, kAxis, kWallAlbedo, /*steps=*/2000);
     const renderer::Scene scene = scene_of(geometry_of({kTiltedPanel}), scan);
@@ -339,7 +339,7 @@ TEST(ThirdBounceScenes, MethodNamesWhatItCannotDo) {
     settings = settings_for(0.0);
     EXPECT_ERROR_WITH(renderer::validate(settings, "render"), "render.target_error: found 0");
 
-    const core::Scan scan = test_support::confocal_scan(kThreeWallPoints);
+    const core::WallScan scan = test_support::confocal_scan(kThreeWallPoints);
     renderer::SceneGeometry geometry = geometry_of({kTiltedPanel});
     geometry.objects[0].material.model = renderer::SurfaceModel::Ggx;
     geometry.objects[0].material.roughness = 0.1;

@@ -28,7 +28,7 @@ using renderer::WallPointLanes;
 
 // A ball and a screen before a sheet, on a wall that bends a little.
 struct HalfHiddenSheet {
-    core::Scan scan = [] {
+    core::WallScan scan = [] {
         std::vector<Vec3> points;
         for (int i = 0; i < 40; ++i) {
             points.emplace_back(-0.4 + 0.1 * (i % 8), -0.4 + 0.1 * (i / 8), 0.002 * (i % 5));
@@ -209,7 +209,7 @@ INSTANTIATE_TEST_SUITE_P(
 // from another one that sees it.
 TEST(ThirdBounceScan, OtherEndsInOtherPlanesTakeNothingAway) {
     const auto histogram = [](const std::vector<Vec3>& sensors) {
-        const core::Scan scan = test_support::exhaustive_scan({Vec3(0.1, 0.0, 0.0)}, sensors);
+        const core::WallScan scan = test_support::exhaustive_scan({Vec3(0.1, 0.0, 0.0)}, sensors);
         renderer::SceneGeometry geometry;
         geometry.objects.push_back(test_support::parallelogram_object(
             {Vec3(-0.2, -0.2, 0.5), Vec3(0.4, 0.0, 0.0), Vec3(0.0, 0.4, 0.05), 0.5}));

@@ -28,12 +28,12 @@ constexpr std::size_t kRaysPerSet = 500;
 
 // A panel, and elements of it that all wall points are taken to see with the same mask.
 struct CheckedPanel {
-    core::Scan scan;
+    core::WallScan scan;
     renderer::Scene scene;
     renderer::ElementSet elements;
     renderer::VisibleElements seen;
 
-    CheckedPanel(const core::Scan& scan_of_pair,
+    CheckedPanel(const core::WallScan& scan_of_pair,
                  const Parallelogram& panel,
                  const std::optional<Parallelogram>& screen,
                  VisibilityMask mask)
@@ -66,7 +66,7 @@ struct CheckedPanel {
 
 struct CheckCase {
     std::string name;
-    core::Scan scan;
+    core::WallScan scan;
     std::optional<double> roughness;
     VisibilityMask mask;
 };

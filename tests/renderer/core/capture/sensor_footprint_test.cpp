@@ -162,7 +162,7 @@ TEST(SensorFootprint, ZonesThatMissTheWallAreDead) {
     EXPECT_GT(partial.size(), 0U);
     EXPECT_LT(partial.size(), 64U);
 
-    const core::Scan scan = core::scan_of_zones(setup);
+    const core::SensorScan scan = core::scan_of_zones(setup);
     EXPECT_EQ(scan.num_pairs(), 6U);
     EXPECT_EQ(scan.sensing.positions[5], setup.wall.center_m);
     core::Capture capture;
