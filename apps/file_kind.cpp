@@ -5,7 +5,7 @@
 #include "calib/track/track_file.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
-#include "renderer/core/settings.h"
+#include "renderer/core/json_file.h"
 #include "renderer/mesh_file/mesh_file.h"
 
 #include <filesystem>

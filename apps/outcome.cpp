@@ -2,6 +2,7 @@
 #include "apps/outcome.h"
 
 #include "apps/terminal.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/process.h"
 #include "renderer/core/stopwatch.h"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "calib/calibrate.h"
 
+#include "renderer/core/settings_json.h"
+
 #include <fmt/core.h>
 
 #include <filesystem>

@@ -1,7 +1,8 @@
-# The order of the rooms, and a test that no include goes against it.
+# The order of the rooms, a test that no include goes against it, and one that no kind is named outside
+# its own file and list.
 #
-#   cmake -DROOT=. -P tests/check_layers.cmake             fails with the offending include
-#   cmake -DROOT=. -DWRITE=ON -P tests/check_layers.cmake  writes the table in CONTRIBUTING.md anew
+#   cmake -DROOT=. -P tests/check_layers.cmake             fails with the offending include or line
+#   cmake -DROOT=. -DWRITE=ON -P tests/check_layers.cmake  draws the rooms of every top folder anew, rooms.svg
 #
 # A room is one folder of sources. It may include itself and rooms on lower floors of its own top
 # folder, and the top folders that `below_` lists; so no two rooms include each other.
@@ -74,7 +75,7 @@ set(third_apps/python "nanobind/|pthread\\.h")
 
 get_filename_component(ROOT ${ROOT} ABSOLUTE)
 set(errors "")
-set(table "| floor | room | includes |\n|---|---|---|\n")
+include(${CMAKE_CURRENT_LIST_DIR}/draw_rooms.cmake)
 foreach(top renderer nlos calib apps)
   set(lower "")  # rooms on the floors below
   set(floor 0)
@@ -117,10 +118,8 @@ foreach(top renderer nlos calib apps)
       endforeach()
       list(REMOVE_DUPLICATES uses)
       list(SORT uses)
-      list(FILTER uses EXCLUDE REGEX "^renderer/core$")
-      list(JOIN uses ", " uses)
+      set(uses_${room} ${uses})
       list(LENGTH files num_files)
-      string(APPEND table "| ${top} ${floor} | ${room} | ${uses} |\n")
       message(STATUS "${room}: ${num_files} files, ${num_lines} lines that are not blank")
     endforeach()
     list(APPEND lower ${rooms})
@@ -142,12 +141,17 @@ if(errors)
   message(FATAL_ERROR "Forbidden includes (see CONTRIBUTING.md, rooms):${errors}")
 endif()
 
-file(READ ${ROOT}/CONTRIBUTING.md text)
-string(REGEX REPLACE "\\| floor \\| room \\|[^\n]*\n(\\|[^\n]*\n)*" "${table}" drawn "${text}")
-if(NOT drawn STREQUAL text)
-  if(NOT WRITE)
-    message(FATAL_ERROR "The table of rooms in CONTRIBUTING.md is not what the includes say; "
-                        "write it anew: cmake -DROOT=. -DWRITE=ON -P tests/check_layers.cmake")
+foreach(top renderer nlos calib apps)
+  draw_rooms(${top} picture)
+  set(path ${ROOT}/${top}/rooms.svg)
+  set(drawn "")
+  if(EXISTS ${path})
+    file(READ ${path} drawn)
   endif()
-  file(WRITE ${ROOT}/CONTRIBUTING.md "${drawn}")
-endif()
+  if(WRITE)
+    file(WRITE ${path} "${picture}")
+  elseif(NOT drawn STREQUAL picture)
+    message(FATAL_ERROR "${top}/rooms.svg is not what the includes say; draw it anew: "
+                        "cmake -DROOT=. -DWRITE=ON -P tests/check_layers.cmake")
+  endif()
+endforeach()

@@ -12,6 +12,7 @@
 #include "renderer/core/mapped_file.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/parallel.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>

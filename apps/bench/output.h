@@ -3,6 +3,7 @@
 
 #include "nlos/pictures/panel.h"
 #include "nlos/plots/plot.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/progress.h"
 #include "renderer/core/settings.h"
 

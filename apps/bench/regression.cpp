@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/regression.h"
 
+#include "renderer/core/json_file.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>

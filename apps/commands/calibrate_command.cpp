@@ -8,6 +8,7 @@
 #include "calib/calibrate.h"
 #include "nlos/formats/capture_file.h"
 #include "renderer/core/output_file.h"
+#include "renderer/core/settings_json.h"
 
 namespace apps {
 namespace {

@@ -14,6 +14,7 @@
 #include "nlos/pictures/picture.h"
 #include "nlos/pictures/pictures.h"
 #include "renderer/core/output_file.h"
+#include "renderer/core/settings_json.h"
 #include "renderer/scene/load_geometry.h"
 
 #include <filesystem>

@@ -14,6 +14,7 @@
 #include "nlos/pictures/pictures.h"
 #include "renderer/core/data_folder.h"
 #include "renderer/core/error.h"
+#include "renderer/core/settings_json.h"
 
 #include <filesystem>
 

@@ -10,6 +10,7 @@
 #include "nlos/layouts/layout_guess.h"
 #include "nlos/preparation/capture_check.h"
 #include "renderer/core/capture/recorded_detector.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/ranges.h>
 
@@ -88,7 +89,7 @@ void describe_volume(std::string& out, const std::string& path) {
              volume.seconds,
              static_cast<double>(volume.peak_bytes) * 1e-9);
     add_line(out, "settings: {}", core::write_value(volume.settings).dump());
-    print_provenance(out, volume.provenance);
+    print_provenance(out, *volume.provenance);
 }
 
 void describe_ply(std::string& out, const std::string& path) {
@@ -139,7 +140,7 @@ void describe_captures(std::string& out,
     if (const auto spot_m = core::recorded_spot_m(capture)) {
         add_line(out, "detector: {}", core::describe_spot(*spot_m));
     }
-    print_provenance(out, capture.scene_info);
+    print_provenance(out, *capture.scene_info);
     if (!missing.empty()) {
         add_line(out,
                  "warning: the file does not hold what stands as 1 m above: --set {}",

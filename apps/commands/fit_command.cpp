@@ -7,6 +7,7 @@
 #include "apps/terminal.h"
 #include "renderer/core/error.h"
 #include "renderer/core/parallel.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/core.h>
 

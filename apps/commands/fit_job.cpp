@@ -11,6 +11,7 @@
 #include "nlos/formats/volume_file.h"
 #include "nlos/preparation/capture_check.h"
 #include "renderer/core/output_file.h"
+#include "renderer/core/settings_json.h"
 #include "renderer/gltf/gltf.h"
 #include "renderer/scene/load_geometry.h"
 

@@ -16,6 +16,7 @@
 #include "nlos/pictures/picture.h"
 #include "nlos/pictures/pictures.h"
 #include "renderer/core/capture/capture.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/progress.h"

@@ -12,6 +12,7 @@
 #include "nlos/pictures/pictures.h"
 #include "nlos/reconstruction/surface_mesh.h"
 #include "renderer/core/output_file.h"
+#include "renderer/core/settings_json.h"
 #include "renderer/gltf/gltf.h"
 
 #include <fmt/ranges.h>
@@ -58,7 +59,7 @@ nlos::Reconstruction reconstruct_to_file(const ReconstructRequest& request) {
     }();
     if (progress.should_stop()) throw core::Failure("reconstruct", "interrupted");
     progress.stage(3, 3, "writing", 1.0, 1.0);
-    result.provenance = {
+    result.provenance = core::Json{
         {"program", version_text()},
         {"command", command_line()},
         {"capture", core::printable(fmt::format("{}", fmt::join(request.captures, " ")))}};

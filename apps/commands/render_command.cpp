@@ -4,6 +4,7 @@
 #include "apps/outcome.h"
 #include "apps/terminal.h"
 #include "renderer/core/parallel.h"
+#include "renderer/core/settings_json.h"
 #include "renderer/scene/scene_file.h"
 
 #include <fmt/core.h>
@@ -86,7 +87,7 @@ void run(const RenderArguments& arguments) {
     }
     const core::Capture& capture = result.capture;
     if (arguments.verbose) {
-        core::Json details = capture.scene_info;
+        core::Json details = *capture.scene_info;
         details.erase("settings");
         write_message(details.dump(2, ' ', true, core::Json::error_handler_t::replace) + "\n");
     }

@@ -9,6 +9,7 @@
 #include "nlos/pictures/pictures.h"
 #include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/core/output_file.h"
+#include "renderer/core/settings_json.h"
 #include "renderer/frame_sequence.h"
 #include "renderer/light_range.h"
 #include "renderer/render.h"

@@ -11,6 +11,7 @@
 #include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/parallel.h"
+#include "renderer/core/settings_json.h"
 
 #include <algorithm>
 #include <numeric>

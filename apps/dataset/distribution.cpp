@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/distribution.h"
 
+#include "renderer/core/settings_json.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>

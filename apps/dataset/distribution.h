@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/json_fwd.h"
 #include "renderer/core/random.h"
 #include "renderer/core/settings.h"
 

@@ -7,6 +7,7 @@
 #include "nlos/pictures/picture.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/parallel.h"
+#include "renderer/core/settings_json.h"
 #include "renderer/core/stopwatch.h"
 
 #include <fmt/core.h>

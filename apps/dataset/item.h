@@ -4,6 +4,7 @@
 #include "apps/dataset/item_plan.h"
 #include "nlos/containers/shape.h"
 #include "nlos/containers/stored_number.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/progress.h"
 
 #include <span>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/item_plan.h"
 
+#include "renderer/core/settings_json.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>

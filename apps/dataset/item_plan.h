@@ -3,6 +3,7 @@
 
 #include "apps/dataset/mesh_library.h"
 #include "apps/dataset/recipe.h"
+#include "renderer/core/json_file.h"
 #include "renderer/material/scene_geometry.h"
 
 #include <cstdint>

@@ -3,6 +3,7 @@
 
 #include "apps/batch/checksum.h"
 #include "renderer/core/output_file.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/core.h>
 

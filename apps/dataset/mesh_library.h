@@ -2,6 +2,7 @@
 #pragma once
 
 #include "apps/dataset/recipe.h"
+#include "renderer/core/json_fwd.h"
 #include "renderer/core/mesh.h"
 
 #include <cstdint>

@@ -3,6 +3,7 @@
 
 #include "apps/page/html.h"
 #include "renderer/core/error.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/parallel.h"
 
 #include <fmt/core.h>

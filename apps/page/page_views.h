@@ -3,6 +3,7 @@
 
 #include "apps/page/result_view.h"
 #include "renderer/core/capture/capture.h"
+#include "renderer/core/json_fwd.h"
 #include "renderer/core/mesh.h"
 
 #include <array>

@@ -3,6 +3,7 @@
 #include "apps/python/capture_histograms.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/pictures/pictures.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/ranges.h>
 #include <nanobind/stl/map.h>
@@ -236,7 +237,7 @@ void bind_facts(nb::class_<Capture>& binding) {
         .def_prop_ro("counts_per_radiance", [](const Capture& c) { return c.counts_per_radiance; })
         .def_prop_rw(
             "scene_info",
-            [](const Capture& c) { return python_from_json(c.scene_info); },
+            [](const Capture& c) { return python_from_json(*c.scene_info); },
             [](Capture& c, const nb::dict& info) {
                 c.scene_info = json_from_python(info, "scene_info");
             },

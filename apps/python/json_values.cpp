@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/python/json_values.h"
 
+#include "renderer/core/settings_json.h"
+
 #include <nanobind/stl/string.h>
 
 #include <cmath>

@@ -4,6 +4,7 @@
 #include "nlos/formats/volume_file.h"
 #include "nlos/pictures/pictures.h"
 #include "nlos/reconstruction/surface_mesh.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/core.h>
 #include <nanobind/stl/optional.h>

@@ -2,6 +2,7 @@
 #include "apps/python/bindings.h"
 #include "apps/scene_truth.h"
 #include "renderer/core/output_file.h"
+#include "renderer/core/settings_json.h"
 #include "renderer/gltf/gltf.h"
 #include "renderer/scene/load_geometry.h"
 

@@ -16,6 +16,7 @@
 #include "nlos/formats/capture_file.h"
 #include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/core/settings_help.h"
+#include "renderer/core/settings_json.h"
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
@@ -81,7 +82,8 @@ nlos::Reconstruction reconstruct(const core::Capture& capture,
         if (applied) calibrated = calib::apply_calibration(*applied, capture);
         nlos::Reconstruction result =
             nlos::reconstruct(calibrated ? *calibrated : capture, settings, report);
-        result.provenance = {{"program", apps::version_text()}, {"command", "nlos.reconstruct"}};
+        result.provenance =
+            core::Json{{"program", apps::version_text()}, {"command", "nlos.reconstruct"}};
         for (const std::string& text : result.warnings) report.warn(text);
         return result;
     });

@@ -3,6 +3,7 @@
 
 #include "apps/dataset/dataset_index.h"
 #include "nlos/pictures/picture.h"
+#include "renderer/core/json_file.h"
 
 #include <fmt/core.h>
 

@@ -9,6 +9,7 @@
 #include "nlos/pictures/pictures.h"
 #include "nlos/preparation/wall_frame.h"
 #include "renderer/core/mapped_file.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/core.h>
 
@@ -192,7 +193,7 @@ ResultCard capture_card(const std::string& path, const core::Capture& capture) {
     card.picture_png = nlos::encode_panels(nlos::capture_panels(capture), kCaptureColumns);
     card.facts = capture_facts(capture);
     card.notes = capture.notes;
-    if (!capture.scene_info.empty()) card.settings = capture.scene_info;
+    if (!capture.scene_info->empty()) card.settings = *capture.scene_info;
     return card;
 }
 

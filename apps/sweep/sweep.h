@@ -6,6 +6,7 @@
 #include "apps/sweep/sweep_plan.h"
 #include "nlos/compare/metrics.h"
 #include "renderer/core/capture/capture.h"
+#include "renderer/core/json_fwd.h"
 #include "renderer/core/progress.h"
 
 #include <cstddef>

@@ -3,6 +3,7 @@
 
 #include "apps/version.h"
 #include "renderer/core/output_file.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/ranges.h>
 

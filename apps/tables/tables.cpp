@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/tables/tables.h"
 
+#include "renderer/core/json_file.h"
+
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 

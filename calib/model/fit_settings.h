@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/core/capture/instrument_response.h"
+#include "renderer/core/json_fwd.h"
 #include "renderer/core/settings.h"
 
 #include <array>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "calib/track/track_file.h"
 
+#include "renderer/core/settings_json.h"
+
 #include <fmt/core.h>
 
 #include <cmath>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "calib/track/track_settings.h"
 
+#include "renderer/core/settings_json.h"
+
 namespace calib {
 namespace {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/containers/shape.h"
-#include "renderer/core/settings.h"
+#include "renderer/core/boxed_json.h"
 
 #include <memory>
 #include <optional>
@@ -30,7 +30,7 @@ struct ArrayDescription {
     std::string type = "file";        ///< of the elements, for people: "float32", "text", "cell"
     std::optional<std::string> text;  ///< of an array that holds one text
     std::size_t rows_per_read = 1;    ///< how much of the slowest index is best read at once
-    core::Json attributes = core::Json::object();  ///< texts, lists of numbers, or null
+    core::BoxedJson attributes;       ///< texts, lists of numbers, or null
 };
 
 /// The names in a file, as many of them as an answer may hold.

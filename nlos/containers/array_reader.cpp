@@ -2,6 +2,7 @@
 #include "nlos/containers/array_reader.h"
 
 #include "renderer/core/error.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/sandboxed_process.h"
 
 #include <fmt/core.h>
@@ -24,7 +25,7 @@ Json to_json(const std::optional<ArrayDescription>& description) {
     Json json{{"kind", description->kind},
               {"type", description->type},
               {"rows_per_read", description->rows_per_read},
-              {"attributes", description->attributes}};
+              {"attributes", *description->attributes}};
     if (description->shape) json["shape"] = *description->shape;
     if (description->text) json["text"] = *description->text;
     return json;
@@ -245,7 +246,7 @@ std::size_t ArrayReader::rows_per_read(const std::string& name) const {
 /// Null when the object or the attribute is missing.
 const Json* ArrayReader::find_attribute(const std::string& object, const std::string& name) const {
     if (!has_object(object)) return nullptr;
-    const Json& attributes = describe(object)->attributes;
+    const Json& attributes = *describe(object)->attributes;
     const auto found = attributes.find(name);
     return found == attributes.end() ? nullptr : &*found;
 }

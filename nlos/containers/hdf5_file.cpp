@@ -3,6 +3,7 @@
 
 #include "nlos/containers/file_memory.h"
 #include "renderer/core/error.h"
+#include "renderer/core/json_file.h"
 
 #include <fmt/core.h>
 #include <hdf5.h>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "renderer/core/json_file.h"
+
 #include "nlos/containers/json_leaves.h"
 #include "renderer/core/error.h"
 #include "renderer/core/mapped_file.h"

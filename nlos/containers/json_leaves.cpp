@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/json_leaves.h"
 
+#include "renderer/core/json_file.h"
+
 #include <algorithm>
 #include <limits>
 #include <memory>

@@ -167,8 +167,8 @@ class Mat73File : public Hdf5File {
         const Hdf5Handle object = open_object(name);
         if (!object.is_valid()) return std::nullopt;
         ArrayDescription description = describe_object(object, name);
-        const auto found = description.attributes.find(kClass);
-        const bool has_class = found != description.attributes.end() && found->is_string();
+        const auto found = description.attributes->find(kClass);
+        const bool has_class = found != description.attributes->end() && found->is_string();
         const std::string matlab_class = has_class ? found->get<std::string>() : "";
         if (!is_dataset(object)) {
             description.type = has_attribute(object, "MATLAB_sparse") ? "sparse" : "struct";

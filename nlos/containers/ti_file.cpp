@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/json_leaves.h"
 #include "renderer/core/error.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/mapped_file.h"
 
 #include <fmt/core.h>

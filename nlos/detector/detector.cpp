@@ -4,6 +4,7 @@
 #include "nlos/detector/count_sampling.h"
 #include "nlos/detector/dead_time.h"
 #include "renderer/core/parallel.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/core.h>
 

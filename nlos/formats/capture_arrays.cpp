@@ -2,6 +2,7 @@
 #include "nlos/formats/capture_arrays.h"
 
 #include "nlos/formats/ytal_layout.h"
+#include "renderer/core/settings_json.h"
 
 namespace nlos {
 
@@ -42,7 +43,7 @@ Shape histogram_shape(const core::Capture& capture) {
 }
 
 core::Json scene_info_of(const core::Capture& capture) {
-    core::Json scene_info = capture.scene_info;
+    core::Json scene_info = *capture.scene_info;
     if (const auto* image = capture.scan.as<core::ImageScan>()) {
         scene_info[kCameraKey] = core::write_value(image->camera);
     }

@@ -7,6 +7,7 @@
 #include "nlos/layouts/layout_capture.h"
 #include "nlos/layouts/layout_guess.h"
 #include "renderer/core/error.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/settings.h"
 
 #include <fmt/core.h>

@@ -36,7 +36,7 @@ std::optional<std::string> extras_left_out(const core::Capture& capture) {
     add(capture.velocity.has_value(), "velocities");
     add(capture.sequence.has_value(), "frames");
     add(capture.observed.has_value(), "observed bins");
-    add(!capture.scene_info.empty(), "scene_info");
+    add(!capture.scene_info->empty(), "scene_info");
     if (names.empty()) return std::nullopt;
     return "the file has no place for " + names;
 }

@@ -3,6 +3,7 @@
 
 #include "nlos/formats/capture_format.h"
 #include "renderer/core/error.h"
+#include "renderer/core/json_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +30,7 @@ void put_measurement(const char* format, const Capture& capture, ExrTable& table
     table.texts[kExrFormatKey] = format;
     table.texts[kUnit] = enum_name(capture.unit);
     table.texts["nlosSceneInfo"] =
-        capture.scene_info.dump(-1, ' ', false, core::Json::error_handler_t::replace);
+        capture.scene_info->dump(-1, ' ', false, core::Json::error_handler_t::replace);
     table.numbers[kStart] = capture.time_axis.opl_start_m;
     table.numbers[kBinWidth] = capture.time_axis.bin_width_m;
     if (capture.counts_per_radiance) table.numbers[kScale] = *capture.counts_per_radiance;

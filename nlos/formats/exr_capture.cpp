@@ -3,6 +3,7 @@
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/exr_attributes.h"
 #include "renderer/core/error.h"
+#include "renderer/core/json_file.h"
 
 #include <fmt/core.h>
 
@@ -173,7 +174,7 @@ Capture read_exr(const std::string& path, const CaptureReadSettings& settings) {
     capture.observed = attributes.observed_bins(capture.scan.num_pairs());
     capture.scene_info =
         core::json_if_valid(attributes.text("nlosSceneInfo")).value_or(core::Json::object());
-    if (!capture.scene_info.is_object()) capture.scene_info = core::Json::object();
+    if (!capture.scene_info->is_object()) capture.scene_info = core::Json::object();
     return capture;
 }
 

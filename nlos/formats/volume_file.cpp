@@ -5,6 +5,7 @@
 #include "nlos/containers/writers/hdf5_writer.h"
 #include "nlos/formats/capture_format.h"
 #include "renderer/core/error.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/core.h>
 
@@ -183,7 +184,7 @@ void write_volume(const std::string& path, const Reconstruction& reconstruction)
     file.write_attribute("/", "reason", reconstruction.reason);
     file.write_attribute(
         "/", "settings", core::json_text(core::write_value(reconstruction.settings)));
-    file.write_attribute("/", "provenance", core::json_text(reconstruction.provenance));
+    file.write_attribute("/", "provenance", core::json_text(*reconstruction.provenance));
     const auto peak_bytes = static_cast<double>(reconstruction.peak_bytes);
     file.write_attribute("/", "seconds", {}, {&reconstruction.seconds, 1});
     file.write_attribute("/", "peak_bytes", {}, {&peak_bytes, 1});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/ytal_layout.h"
 
+#include "renderer/core/json_file.h"
+
 namespace nlos {
 namespace {
 

@@ -4,6 +4,7 @@
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/ytal_layout.h"
 #include "renderer/core/error.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/core.h>
 
@@ -84,9 +85,9 @@ void read_frame_steps(const ArrayReader& file, core::FrameSequence& sequence) {
 void read_own_group(const ArrayReader& file, Capture& capture) {
     if (const auto unit = file.text_attribute("nlos", "unit")) {
         core::read_value(core::Json(*unit), file.where("nlos attribute unit"), capture.unit);
-    } else if (capture.scene_info.contains(kUnitKey)) {
+    } else if (capture.scene_info->contains(kUnitKey)) {
         core::read_value(
-            capture.scene_info[kUnitKey], file.where("scene_info: unit"), capture.unit);
+            (*capture.scene_info)[kUnitKey], file.where("scene_info: unit"), capture.unit);
     }
     if (const auto scale = file.real_attribute("nlos", "counts_per_radiance")) {
         capture.counts_per_radiance =

@@ -4,6 +4,7 @@
 #include "nlos/formats/ytal_layout.h"
 #include "nlos/layouts/layout_histograms.h"
 #include "renderer/core/error.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/core.h>
 
@@ -132,7 +133,7 @@ HFormat read_h_format(const ArrayReader& file, bool lists) {
 /// The camera of an image: it stands in scene_info and both grids are null. False for scans.
 bool read_camera(const ArrayReader& file, Capture& capture) {
     const bool has_points = file.has("sensor_grid_xyz") || file.has("laser_grid_xyz");
-    if (has_points || !capture.scene_info.contains(kCameraKey)) return false;
+    if (has_points || !capture.scene_info->contains(kCameraKey)) return false;
     core::PinholeCamera camera;
     core::read_value(capture.scene_info[kCameraKey], file.where("scene_info: camera"), camera);
     core::validate(camera, file.where("scene_info: camera"));

@@ -3,6 +3,7 @@
 #include "nlos/formats/capture_arrays.h"
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/ytal_layout.h"
+#include "renderer/core/json_file.h"
 
 namespace nlos {
 namespace {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/core/capture/capture.h"
+#include "renderer/core/json_fwd.h"
 
 #include <map>
 #include <optional>

@@ -3,6 +3,7 @@
 
 #include "nlos/layouts/layout_histograms.h"
 #include "renderer/core/error.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/nearest_name.h"
 
 #include <fmt/ranges.h>

@@ -11,7 +11,7 @@ constexpr double kQuietShare = 0.002;  // of all light, left out at either end o
 constexpr double kShownMargin = 0.02;  // of the axis, kept around what is shown
 
 bool is_rendered(const core::Capture& capture) {
-    return capture.scene_info.contains("estimator");
+    return capture.scene_info->contains("estimator");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "nlos/preparation/first_light.h"
 #include "nlos/preparation/histogram_preparation.h"
 #include "renderer/core/capture/sensor_footprint.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/parallel.h"
 
 #include <fmt/format.h>
@@ -229,7 +230,7 @@ std::optional<std::string> wrong_unit(const core::Capture& capture) {
 /// Light that the renderer knows to lie outside the axis.
 std::optional<std::string> cut_light(const core::Capture& capture) {
     constexpr double kMostMissing = 0.01;
-    const core::Json& made = capture.scene_info;
+    const core::Json& made = *capture.scene_info;
     if (!made.is_object() || !made.contains("light") || !made["light"].is_object()) return {};
     const core::Json share = made["light"].value("share_in_axis", core::Json());
     if (!share.is_number() || share.get<double>() >= 1.0 - kMostMissing) return {};

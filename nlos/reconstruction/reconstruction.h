@@ -3,6 +3,7 @@
 
 #include "nlos/reconstruction/reconstruct_settings.h"
 #include "nlos/reconstruction/volume.h"
+#include "renderer/core/boxed_json.h"
 #include "renderer/core/depth_map.h"
 #include "renderer/core/mesh.h"
 
@@ -24,7 +25,7 @@ struct Reconstruction {
     std::vector<std::string> findings;  ///< what `auto` found looking at the capture, a line each
     ReconstructSettings settings;       ///< with every choice filled in
     std::vector<std::string> warnings;  ///< what looks wrong about the capture
-    core::Json provenance;              ///< who made it from what, as the caller says
+    core::BoxedJson provenance;         ///< who made it from what, as the caller says
     double seconds = 0.0;
     double stated_bytes = 0.0;  ///< memory on top of the capture, announced before the run
     std::uint64_t peak_bytes = 0;

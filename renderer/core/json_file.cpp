@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "renderer/core/json_file.h"
+
 #include "renderer/core/mapped_file.h"
 #include "renderer/core/nearest_name.h"
 #include "renderer/core/settings.h"

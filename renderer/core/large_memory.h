@@ -10,8 +10,8 @@ namespace core {
 /// first touch of every small page, and walks across many, take as long as the work on them.
 void use_huge_pages(void* memory, std::size_t num_bytes);
 
-/// `count` zeros. All threads allowed bring their pages into memory, which would keep one busy for a
-/// good part of the work that follows.
+/// `count` zeros. All threads allowed bring their pages into memory, which would keep one busy for
+/// a good part of the work that follows.
 std::vector<float> zeros(std::size_t count);
 
 /// Has the process keep most of the memory that it frees for what it needs next, instead of giving

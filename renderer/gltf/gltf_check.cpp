@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "renderer/core/settings_json.h"
 #include "renderer/gltf/gltf_document.h"
 
 #include <algorithm>

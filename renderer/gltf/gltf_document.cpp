@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/gltf/gltf_document.h"
 
+#include "renderer/core/error.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/mapped_file.h"
 
 #include <tiny_gltf.h>

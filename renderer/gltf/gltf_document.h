@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/settings.h"
+#include "renderer/core/json_file.h"
+#include "renderer/core/types.h"
 
 #include <memory>
 #include <string>

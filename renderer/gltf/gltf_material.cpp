@@ -2,6 +2,7 @@
 #include "renderer/gltf/gltf_material.h"
 
 #include "renderer/core/error.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/core.h>
 #include <tiny_gltf.h>

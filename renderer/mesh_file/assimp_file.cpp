@@ -2,9 +2,9 @@
 #include "renderer/mesh_file/assimp_file.h"
 
 #include "renderer/core/error.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/mapped_file.h"
 #include "renderer/core/sandboxed_process.h"
-#include "renderer/core/settings.h"
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>

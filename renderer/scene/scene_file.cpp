@@ -2,6 +2,7 @@
 #include "renderer/scene/scene_file.h"
 
 #include "renderer/core/process.h"
+#include "renderer/core/settings_json.h"
 #include "renderer/gltf/gltf.h"
 #include "renderer/scene/sensor_settings.h"
 

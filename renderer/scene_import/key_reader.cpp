@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene_import/key_reader.h"
 
+#include "renderer/core/settings_json.h"
+
 namespace renderer {
 
 std::string text_of(const core::Json& json, const std::string& key) {

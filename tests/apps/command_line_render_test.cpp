@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `nlos render` and what it makes of a scene: meshes, scenes of other programs, axes, images.
 #include "nlos/formats/capture_file.h"
+#include "renderer/core/json_file.h"
 #include "tests/support/command_line.h"
 
 #include <gtest/gtest.h>

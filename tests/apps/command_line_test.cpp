@@ -5,6 +5,7 @@
 #include "apps/commands.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
+#include "renderer/core/json_file.h"
 
 #include <gtest/gtest.h>
 
@@ -126,7 +127,7 @@ TEST_F(CommandLine, CalibrationsServeRenderReconstructAndFit) {
 TEST_F(CommandLine, CaptureRemembersHowItWasMade) {
     const std::string scene = make_scene("scene.json", core::Json::object());
     ASSERT_EQ(run("render " + scene + " -o " + file("c.h5") + " --seed 7").status, 0);
-    const core::Json info = nlos::read_capture(file("c.h5")).scene_info;
+    const core::Json info = *nlos::read_capture(file("c.h5")).scene_info;
     EXPECT_EQ(info["settings"]["render"]["seed"], 7);
     EXPECT_NE(info["command"].get<std::string>().find("--seed 7"), std::string::npos);
     EXPECT_NE(info["program"].get<std::string>().find("nlos 0."), std::string::npos);
@@ -221,7 +222,7 @@ TEST_F(CommandLine, ConversionsComeBackTheSame) {
     const core::Capture a = nlos::read_capture(file("a.h5"));
     const core::Capture c = nlos::read_capture(file("c.hdf5"));
     EXPECT_TRUE(std::ranges::equal(a.transient.values(), c.transient.values()));
-    EXPECT_EQ(a.scene_info, c.scene_info);
+    EXPECT_EQ(*a.scene_info, *c.scene_info);
     const Outcome mat = run("convert " + file("a.h5") + " " + file("d.mat"));
     ASSERT_EQ(mat.status, 0) << mat.err;
     EXPECT_NE(mat.out.find("not kept:"), std::string::npos);

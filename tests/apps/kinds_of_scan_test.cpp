@@ -2,6 +2,7 @@
 // Every kind of scan through every command that takes one: it works, or is refused in one line that
 // says what is allowed.
 #include "nlos/formats/capture_file.h"
+#include "renderer/core/json_file.h"
 #include "tests/support/command_line.h"
 
 #include <gtest/gtest.h>

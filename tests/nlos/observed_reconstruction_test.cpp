@@ -2,6 +2,7 @@
 // What every method makes of a gate that holds the object and of dead points.
 #include "nlos/detector/detector.h"
 #include "nlos/reconstruct.h"
+#include "renderer/core/settings_json.h"
 #include "tests/nlos/methods/confocal_scene.h"
 #include "tests/support/error_message.h"
 #include "tests/support/statistics.h"

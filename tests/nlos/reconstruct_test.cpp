@@ -3,6 +3,7 @@
 
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
+#include "renderer/core/settings_json.h"
 #include "tests/nlos/methods/confocal_scene.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"

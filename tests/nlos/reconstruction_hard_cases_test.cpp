@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruct.h"
+#include "renderer/core/settings_json.h"
 #include "tests/nlos/methods/confocal_scene.h"
 #include "tests/support/error_message.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/core/capture/transient.h"
-#include "renderer/core/settings.h"
+#include "renderer/core/json_fwd.h"
 
 #include <array>
 #include <cstddef>
@@ -43,8 +43,8 @@ BinAgreement bin_agreement_of(const core::Transient& truth,
 /// The magnitude that the largest of so many normal scores exceeds with probability `level`.
 double largest_score_by_chance(int num_scores, double level);
 
-/// Says of the rows of a table of agreements whether they are `consistent`. They are judged together,
-/// since chance may call one table in a hundred inconsistent.
+/// Says of the rows of a table of agreements whether they are `consistent`. They are judged
+/// together, since chance may call one table in a hundred inconsistent.
 ///
 /// rows   with `cells` and the scores `worst_z` (null: not measured), `energy_z` and `rms_z`
 void judge_agreement(std::vector<core::Json>& rows);

@@ -5,6 +5,7 @@
 #include "apps/bench/field/reconstruction_table.h"
 #include "nlos/compare/compare_scores.h"
 #include "nlos/formats/capture_file.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/core.h>
 

@@ -4,6 +4,7 @@
 #include "apps/run_program.h"
 #include "renderer/core/data_folder.h"
 #include "renderer/core/error.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/process.h"
 

@@ -10,6 +10,7 @@
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
 #include "nlos/pictures/pictures.h"
+#include "renderer/core/json_file.h"
 #include "renderer/scene/ground_truth.h"
 
 #include <fmt/core.h>

@@ -3,6 +3,7 @@
 
 #include "apps/bench/field/contenders.h"
 #include "apps/bench/output.h"
+#include "renderer/core/json_fwd.h"
 #include "renderer/core/progress.h"
 
 #include <optional>

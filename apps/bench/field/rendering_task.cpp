@@ -7,6 +7,7 @@
 #include "nlos/containers/array_reader.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/ply_file.h"
+#include "renderer/core/settings_json.h"
 #include "renderer/scene/load_geometry.h"
 
 #include <fmt/core.h>

@@ -5,6 +5,7 @@
 #include "apps/bench/fit/fit_trials.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
+#include "renderer/core/settings_json.h"
 #include "renderer/render.h"
 
 #include <fmt/core.h>

@@ -4,6 +4,7 @@
 #include "apps/bench/reconstruct/reconstruct_trials.h"
 #include "calib/statistics/median.h"
 #include "nlos/plots/plot.h"
+#include "renderer/core/json_file.h"
 #include "renderer/scene/ground_truth.h"
 
 #include <fmt/format.h>

@@ -6,6 +6,7 @@
 #include "nlos/compare/compare.h"
 #include "nlos/detector/detector.h"
 #include "renderer/core/parallel.h"
+#include "renderer/core/settings_json.h"
 #include "renderer/render.h"
 
 #include <fmt/format.h>

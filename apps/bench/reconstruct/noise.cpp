@@ -5,6 +5,7 @@
 #include "apps/scene_truth.h"
 #include "nlos/compare/compare.h"
 #include "nlos/detector/detector.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/core.h>
 

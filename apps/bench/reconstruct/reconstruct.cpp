@@ -3,6 +3,7 @@
 
 #include "apps/bench/command.h"
 #include "renderer/core/parallel.h"
+#include "renderer/core/settings_json.h"
 
 namespace apps {
 namespace {

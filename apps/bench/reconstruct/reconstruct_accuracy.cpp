@@ -8,6 +8,7 @@
 #include "nlos/formats/capture_file.h"
 #include "renderer/core/capture/capture.h"
 #include "renderer/core/depth_map.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/parallel.h"
 #include "renderer/scene/scene_file.h"
 

@@ -4,6 +4,7 @@
 #include "apps/bench/reconstruct/reconstruct_trials.h"
 #include "apps/bench/scene.h"
 #include "nlos/compare/compare_scores.h"
+#include "renderer/core/json_file.h"
 
 #include <fmt/core.h>
 

@@ -6,6 +6,7 @@
 #include "nlos/detector/detector.h"
 #include "renderer/core/process.h"
 #include "renderer/core/random.h"
+#include "renderer/core/settings_json.h"
 
 #include <cmath>
 #include <cstdint>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "nlos/reconstruct.h"
+#include "renderer/core/json_fwd.h"
 #include "renderer/scene/scene.h"
 
 #include <string>

@@ -5,6 +5,7 @@
 #include "apps/bench/statistics.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
+#include "renderer/core/settings_json.h"
 
 #include <algorithm>
 #include <array>

@@ -6,6 +6,7 @@
 #include "apps/bench/statistics.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/core.h>
 

@@ -2,6 +2,7 @@
 #include "apps/bench/command.h"
 #include "apps/bench/scene.h"
 #include "apps/bench/statistics.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/frame_sequence.h"

@@ -9,6 +9,7 @@
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/core/random.h"
+#include "renderer/core/settings_json.h"
 #include "renderer/third_bounce/third_bounce.h"
 
 #include <fmt/core.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/boxed_json.h"
 #include "renderer/core/capture/observed_bins.h"
 #include "renderer/core/capture/scan.h"
 #include "renderer/core/capture/time_axis.h"
@@ -45,8 +46,8 @@ struct Capture {
     std::optional<VelocityHistogram> velocity;  ///< the same light by path velocity
     std::optional<FrameSequence> sequence;      ///< whose last frame the rest is about
 
-    Json scene_info = Json::object();  ///< free dictionary: settings echo, version, seed, ...
-    std::vector<std::string> notes;    ///< what the reader assumed or changed; shown by `nlos info`
+    BoxedJson scene_info;            ///< free dictionary: settings echo, version, seed, ...
+    std::vector<std::string> notes;  ///< what the reader assumed or changed; shown by `nlos info`
 
     /// The bins in which the detector could record this pair.
     BinRange observed_range(std::size_t pair) const {

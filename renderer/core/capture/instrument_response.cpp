@@ -3,6 +3,7 @@
 
 #include "renderer/core/mapped_file.h"
 #include "renderer/core/parallel.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/core.h>
 

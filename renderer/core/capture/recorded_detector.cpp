@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/capture/recorded_detector.h"
 
+#include "renderer/core/json_file.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,9 +14,9 @@ namespace {
 
 // Provenance comes from anywhere: what is no object of ours counts as nothing.
 const Json* detector_of(const Capture& capture) {
-    if (!capture.scene_info.is_object()) return nullptr;
-    const auto found = capture.scene_info.find("detector");
-    return found != capture.scene_info.end() && found->is_object() ? &*found : nullptr;
+    if (!capture.scene_info->is_object()) return nullptr;
+    const auto found = capture.scene_info->find("detector");
+    return found != capture.scene_info->end() && found->is_object() ? &*found : nullptr;
 }
 
 double number_at(const Json& json, const char* key) {

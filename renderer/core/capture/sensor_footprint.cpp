@@ -2,6 +2,7 @@
 #include "renderer/core/capture/sensor_footprint.h"
 
 #include "renderer/core/capture/capture.h"
+#include "renderer/core/settings_json.h"
 
 #include <fmt/core.h>
 
@@ -272,9 +273,9 @@ void observe_live_zones(const SensorSetup& setup, Capture& capture) {
 
 std::optional<SensorSetup> recorded_sensor(const Capture& capture) {
     if (const auto* scan = capture.scan.as<SensorScan>()) return *scan->setup;
-    if (!capture.scene_info.is_object()) return std::nullopt;
-    const auto found = capture.scene_info.find("sensor");
-    if (found == capture.scene_info.end() || !found->is_object()) return std::nullopt;
+    if (!capture.scene_info->is_object()) return std::nullopt;
+    const auto found = capture.scene_info->find("sensor");
+    if (found == capture.scene_info->end() || !found->is_object()) return std::nullopt;
     SensorSetup setup;
     read_value(*found, "scene_info.sensor", setup);
     validate(setup, "scene_info.sensor");

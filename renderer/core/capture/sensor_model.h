@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/core/capture/time_axis.h"
+#include "renderer/core/json_fwd.h"
 #include "renderer/core/settings.h"
 #include "renderer/core/types.h"
 

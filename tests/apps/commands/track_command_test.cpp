@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // nlos track as its users call it: frames from files and as lines, and what it refuses.
-#include "renderer/core/settings.h"
+#include "renderer/core/settings_json.h"
 #include "tests/apps/commands/simulated_walk.h"
 #include "tests/support/command_line.h"
 

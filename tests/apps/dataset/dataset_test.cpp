@@ -3,6 +3,7 @@
 #include "apps/dataset/dataset_index.h"
 #include "apps/dataset/generate.h"
 #include "nlos/containers/array_reader.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/parallel.h"
 #include "tests/apps/dataset/tiny_recipe.h"
 #include "tests/support/error_message.h"

@@ -8,6 +8,7 @@
 #include "nlos/pictures/picture.h"
 #include "nlos/pictures/pictures.h"
 #include "renderer/core/output_file.h"
+#include "renderer/core/settings_json.h"
 #include "tests/apps/page/page_text.h"
 #include "tests/apps/report/example_scores.h"
 #include "tests/support/error_message.h"

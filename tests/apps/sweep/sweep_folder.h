@@ -3,6 +3,7 @@
 
 #include "apps/sweep/sweep.h"
 #include "apps/sweep/sweep_summary.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/parallel.h"
 #include "tests/support/command_line.h"
 

@@ -3,6 +3,7 @@
 #include "apps/sweep/sweep.h"
 
 #include "renderer/core/parallel.h"
+#include "renderer/core/settings_json.h"
 #include "tests/apps/sweep/sweep_folder.h"
 #include "tests/support/error_message.h"
 

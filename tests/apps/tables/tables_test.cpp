@@ -2,6 +2,7 @@
 #include "apps/tables/tables.h"
 
 #include "apps/bench/output.h"
+#include "renderer/core/json_file.h"
 
 #include <gtest/gtest.h>
 

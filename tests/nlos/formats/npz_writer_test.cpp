@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What stands in .npz files, read by libzip and byte by byte.
 #include "nlos/formats/capture_file.h"
+#include "renderer/core/json_file.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
 #include "tests/support/file_bytes.h"
@@ -148,7 +149,8 @@ TEST(NpzWriter, PointsAndAxisKeepEveryBit) {
 TEST(NpzWriter, TextsAreUnicodeOfFourBytesPerCharacter) {
     Capture capture = example_capture(ScanPattern::Confocal);
     capture.unit = core::TransientUnit::Counts;
-    capture.scene_info = {{"a", "\xc3\xbc \xe2\x82\xac \xf0\x9f\x98\x80"}};  // 2, 3 and 4 bytes
+    capture.scene_info =
+        core::Json{{"a", "\xc3\xbc \xe2\x82\xac \xf0\x9f\x98\x80"}};  // 2, 3 and 4 bytes
     const auto members = write_and_unzip(capture);
     EXPECT_EQ(members.at("unit").dictionary, dictionary("<U6", "()"));
     EXPECT_EQ(members.at("unit").text(), "counts");

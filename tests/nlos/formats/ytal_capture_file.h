@@ -38,7 +38,7 @@ inline void expect_same(const core::Capture& a, const core::Capture& b) {
     ASSERT_EQ(a.transient.num_pairs(), b.transient.num_pairs());
     EXPECT_TRUE(std::ranges::equal(a.transient.values(), b.transient.values()));
     EXPECT_EQ(a.unit, b.unit);
-    EXPECT_EQ(a.scene_info, b.scene_info);
+    EXPECT_EQ(*a.scene_info, *b.scene_info);
     ASSERT_EQ(a.variance.has_value(), b.variance.has_value());
     if (a.variance) {
         EXPECT_TRUE(std::ranges::equal(a.variance->values(), b.variance->values()));

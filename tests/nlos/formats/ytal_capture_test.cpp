@@ -2,6 +2,8 @@
 #include "nlos/containers/array_reader.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/ytal_layout.h"
+#include "renderer/core/json_file.h"
+#include "renderer/core/settings_json.h"
 #include "tests/nlos/formats/ytal_capture_file.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"

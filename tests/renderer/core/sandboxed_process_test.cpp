@@ -2,6 +2,7 @@
 #include "renderer/core/sandboxed_process.h"
 
 #include "renderer/core/error.h"
+#include "renderer/core/json_file.h"
 #include "tests/support/error_message.h"
 
 #include <gtest/gtest.h>

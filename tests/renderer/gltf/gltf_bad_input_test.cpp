@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "renderer/core/json_file.h"
 #include "renderer/core/random.h"
 #include "tests/renderer/gltf/gltf_files.h"
 #include "tests/support/error_message.h"
@@ -130,7 +131,8 @@ TEST(GltfBadInput, MessagesNameTheOffendingValue) {
         {"materials[0].pbrMetallicRoughness.baseColorFactor",
          "/materials",
          R"([{"pbrMetallicRoughness": {"baseColorFactor": [2, 0, 0, 1]}}])"},
-        {"nodes[0].extras.nlos_rolle: found an unknown key; did you mean 'nlos_role'? known keys are nlos_role",
+        {"nodes[0].extras.nlos_rolle: found an unknown key; did you mean 'nlos_role'? known keys "
+         "are nlos_role",
          "/nodes/0/extras",
          R"({"nlos_rolle": "hidden"})"},
         {"nodes[0].extras.nlos_role: found \"wall\"; must be one of hidden|relay_wall|back_wall",

@@ -2,6 +2,7 @@
 // Geometry, nodes, extras and cameras of glTF files.
 #include "renderer/gltf/gltf.h"
 
+#include "renderer/core/json_file.h"
 #include "tests/renderer/gltf/gltf_files.h"
 
 #include <gtest/gtest.h>

@@ -2,6 +2,7 @@
 #include "renderer/scene_import/foreign_file.h"
 
 #include "renderer/core/error.h"
+#include "renderer/core/json_file.h"
 #include "renderer/core/random.h"
 #include "tests/support/error_message.h"
 #include "tests/support/file_bytes.h"
