@@ -18,8 +18,8 @@ constexpr std::size_t kMaxRows = 256;
 constexpr double kCellsAcross = 90.0;
 
 // Colours that colour-blind people tell apart [Wong2011].
-constexpr nlos::Colour kTruth{0, 114, 178};
-constexpr nlos::Colour kFit{230, 159, 0};
+constexpr nlos::Colour kTruth = nlos::kSeriesColours[0];
+constexpr nlos::Colour kFit = nlos::kSeriesColours[1];
 constexpr nlos::Colour kBoth{90, 90, 90};
 
 nlos::ImagePanel rows_panel(const calib::FitResult& result,
