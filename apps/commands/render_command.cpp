@@ -20,7 +20,6 @@ struct RenderArguments {
     std::string calibration;
     std::vector<std::string> overrides;  ///< --samples 64 becomes render.samples=64
     int threads = 0;
-    bool verbose = false;
 };
 
 constexpr std::array<Shorthand, 6> kRenderShorthands{
@@ -86,11 +85,6 @@ void run(const RenderArguments& arguments) {
                                         result.seconds));
     }
     const core::Capture& capture = result.capture;
-    if (arguments.verbose) {
-        core::Json details = *capture.scene_info;
-        details.erase("settings");
-        write_message(details.dump(2, ' ', true, core::Json::error_handler_t::replace) + "\n");
-    }
     const std::string frames =
         capture.sequence ? fmt::format("{} frames x ", capture.sequence->frames.size()) : "";
     print("wrote {} ({}{} pairs x {} bins, {} by {}, {}{:.2f} s)\n",
@@ -116,10 +110,6 @@ void declare_render(Command& command) {
                     arguments.calibration,
                     "Calibration of the set-up to record with (.json)");
     add_threads_option(command, arguments.threads);
-    command.add_flag("--verbose",
-                     arguments.verbose,
-                     "Also print what the run did: estimators, excluded objects, shifts and why "
-                     "they were rejected");
     add_set_option(command, arguments.overrides);
 }
 

@@ -39,8 +39,6 @@ void declare_reconstruct_bench(Command& command) {
     auto& settings = add_benchmark(command, measure_reconstruct);
     add_setting(command, "--scenes", settings.scenes_folder, "Folder of the scenes")
         ->type_name("DIR");
-    add_file_option(
-        command, "--capture", settings.capture, "Also score this capture of the letter T");
     add_setting(command, "--part", settings.part, "What to measure")
         ->check(one_of({"all", "time", "accuracy", "scaling"}));
     add_setting(command, "--repeats", settings.repeats, "Runs per median", {1, 1000});

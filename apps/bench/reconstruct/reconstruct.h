@@ -33,7 +33,6 @@ NLOS_FIGURES(ReconstructScaling, method, of, points, time_exponent, memory_expon
 struct ReconstructBenchSettings {
     std::string scenes_folder = "scenes";
     std::string part = "all";  ///< or time, accuracy, scaling
-    std::string capture;       ///< of the letter T from elsewhere, see letter.h; empty: none
     int repeats = 3;
     int threads = 1;
     int largest = 256;  ///< wall points along a side in the scaling curves
@@ -53,7 +52,7 @@ std::vector<ReconstructScaling> measure_scaling(const ReconstructBenchSettings& 
 
 /// All three, as tables and plots.
 ///
-/// throws   core::Error when a scene or the capture cannot be read
+/// throws   core::Error when a scene cannot be read
 BenchResult measure_reconstruct(const ReconstructBenchSettings& settings,
                                 const core::Progress& progress);
 
@@ -74,7 +73,6 @@ BenchResult measure_coverage(const CoverageBenchSettings& settings, const core::
 struct WeightsBenchSettings {
     int surfaces = 20;  ///< each at every signal level
     int first = 3000;   ///< number of the first
-    std::string pattern = "confocal";
     std::vector<double> peaks{0.0, 1000.0, 100.0, 20.0, 3.0};
     std::vector<double> observed{1.0, 0.0625};
     std::vector<double> weights{0.0875, 0.175, 0.35, 0.7, 1.4, 2.8, 5.6};

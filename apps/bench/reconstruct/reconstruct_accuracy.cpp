@@ -5,7 +5,6 @@
 #include "apps/scene_truth.h"
 #include "nlos/compare/compare.h"
 #include "nlos/detector/detector.h"
-#include "nlos/formats/capture_file.h"
 #include "renderer/core/capture/capture.h"
 #include "renderer/core/depth_map.h"
 #include "renderer/core/json_file.h"
@@ -122,10 +121,6 @@ Exam with_counts(Exam exam, double peak_counts) {
     return exam;
 }
 
-Exam exam_of_letter_t(const std::string& name, core::Capture capture) {
-    return {name, std::move(capture), letter_t_depth};
-}
-
 /// A method that serves an exam, and what is asked of it.
 struct Candidate {
     std::string method;
@@ -188,29 +183,21 @@ std::vector<AccuracyCase> accuracy_cases(const ReconstructBenchSettings& setting
                                            {"bp"}};
     const std::vector<Candidate> all{
         {"lct"}, {"solver"}, {"dlct"}, {"fk"}, {"phasor"}, {"fbp"}, {"bp"}};
+    const auto letter_t = [](const char* name, core::ScanPattern pattern) {
+        return [name, pattern] { return Exam{name, letter_t_capture(pattern), letter_t_depth}; };
+    };
     const auto scene = [folder](const std::string& name) {
         return [folder, name] { return exam_of_scene(folder, name); };
     };
-    std::vector<AccuracyCase> cases{
-        {[] { return exam_of_letter_t("letter T", letter_t_capture(core::ScanPattern::Confocal)); },
-         on_letter_t},
-        {[] {
-             return exam_of_letter_t("letter T, single laser",
-                                     letter_t_capture(core::ScanPattern::Single));
-         },
-         {{"phasor", {2.8e-3, 0.83, 0.0}}, {"fbp"}}},
-        {scene("animal"), on_animal},
-        {[folder] { return with_counts(exam_of_scene(folder, "animal"), 20.0); }, on_animal},
-        {scene("letter"), all},
-        {scene("bars"), all},
-        {scene("corner"), all},
-        {scene("curved"), {{"phasor"}, {"fbp"}, {"bp"}}}};
-    if (!settings.capture.empty()) {
-        const std::string path = settings.capture;
-        cases.push_back(
-            {[path] { return exam_of_letter_t(path, nlos::read_capture(path)); }, on_letter_t});
-    }
-    return cases;
+    return {{letter_t("letter T", core::ScanPattern::Confocal), on_letter_t},
+            {letter_t("letter T, single laser", core::ScanPattern::Single),
+             {{"phasor", {2.8e-3, 0.83, 0.0}}, {"fbp"}}},
+            {scene("animal"), on_animal},
+            {[folder] { return with_counts(exam_of_scene(folder, "animal"), 20.0); }, on_animal},
+            {scene("letter"), all},
+            {scene("bars"), all},
+            {scene("corner"), all},
+            {scene("curved"), {{"phasor"}, {"fbp"}, {"bp"}}}};
 }
 
 }  // namespace

@@ -51,9 +51,8 @@ renderer::SceneGeometry random_surface(int number) {
 
 }  // namespace
 
-RandomCapture make_random_capture(int number, core::ScanPattern pattern) {
+RandomCapture make_random_capture(int number) {
     renderer::SceneDescription description;
-    description.scan.pattern = pattern;
     description.scan.sensing_points = {kPointsPerAxis, kPointsPerAxis};
     const core::Scan scan = renderer::make_scan(description);
     renderer::Scene scene(random_surface(number), scan, renderer::RelayWall{});

@@ -19,8 +19,8 @@ inline const std::string kSlices = "volume.z_range_m=[0.45,1.05]";
 /// `target` is what was asked, `met` yes, no, or empty without a target.
 void judge(bool is_asked, const std::string& text, bool is_met, core::Json& row);
 
-/// A random smooth surface before a wall of 1 m, and what a scan of 32 x 32 points in 256 bins
-/// of 8 mm gets of it, without noise: every other one a tilted rectangle, the rest bent.
+/// A random smooth surface before a wall of 1 m, and what a confocal scan of 32 x 32 points in 256
+/// bins of 8 mm gets of it, without noise: every other one a tilted rectangle, the rest bent.
 ///
 /// Its centre is 0.5 to 0.9 m away, its half width 0.12 to 0.35 m, its tilt up to 25 degrees; bends
 /// are bumps or dents of up to a fifth of the width.
@@ -29,10 +29,8 @@ struct RandomCapture {
     core::Capture capture;
 };
 
-/// number    of the surface; the same number gives the same surface
-/// pattern   of the scan
-RandomCapture make_random_capture(int number,
-                                  core::ScanPattern pattern = core::ScanPattern::Confocal);
+/// number   of the surface; the same number gives the same surface
+RandomCapture make_random_capture(int number);
 
 /// Counts of it with this many expected in the brightest bin, over background light of a fiftieth.
 core::Capture random_counts(const core::Capture& clean, double peak_counts, int seed);

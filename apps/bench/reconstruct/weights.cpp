@@ -119,18 +119,14 @@ void declare_weights_bench(Command& command) {
     auto& settings = add_benchmark(command, measure_weights);
     add_setting(command, "--surfaces", settings.surfaces, "Random surfaces", {1, 10000});
     add_setting(command, "--first", settings.first, "Number of the first of them", {0, 1000000});
-    add_setting(command, "--pattern", settings.pattern, "Scan: single, confocal or exhaustive");
     add_setting(
         command, "--peaks", settings.peaks, "Counts in the brightest bin; 0: without noise");
     add_setting(command, "--observed", settings.observed, "Shares of the wall points");
-    add_setting(command, "--weights", settings.weights, "Values of solver.tv to search");
 }
 
 }  // namespace
 
 BenchResult measure_weights(const WeightsBenchSettings& settings, const core::Progress& progress) {
-    core::ScanPattern pattern{};
-    core::read_value(settings.pattern, "--pattern", pattern);
     std::vector<Search> searches;
     for (const double observed : settings.observed) {
         for (const double peak : settings.peaks) {
@@ -139,7 +135,7 @@ BenchResult measure_weights(const WeightsBenchSettings& settings, const core::Pr
         }
     }
     for (int number = 0; number < settings.surfaces; ++number) {
-        const RandomCapture random = make_random_capture(settings.first + number, pattern);
+        const RandomCapture random = make_random_capture(settings.first + number);
         for (Search& search : searches) {
             progress.update(share_of(number, settings.surfaces), "surfaces");
             add_surface(random, number, settings.weights, search);

@@ -55,18 +55,6 @@ std::vector<RenderScaling> bench_render_scaling(const core::Progress& progress);
 /// What `nlos bench render` is to measure.
 struct RenderBenchSettings {
     std::string scene = "scenes/bars/scene.json";
-    std::string camera_scene = "scenes/box/scene.json";  ///< where gates are tried, too
-    /// Where excluding surfaces from ellipsoidal connections is tried: a relay wall, a curved one,
-    /// and a back wall with its neighbours.
-    std::vector<std::string> exclusion_scenes = {
-        "scenes/bars/scene.json", "scenes/curved/scene.json", "scenes/corner/scene.json"};
-    /// Where third_bounce and path are compared bin by bin.
-    std::vector<std::string> agreement_scenes = {"scenes/letter/scene.json",
-                                                 "scenes/bars/scene.json",
-                                                 "scenes/corner/scene.json",
-                                                 "scenes/glossy/scene.json",
-                                                 "scenes/animal/scene.json",
-                                                 "scenes/curved/scene.json"};
     std::string part = "all";  ///< or curves, third_bounce, accuracy, gates, exclusion, scaling
     int repeats = 3;           ///< runs per point; those that take long are not repeated
     bool quick = false;        ///< leaves out what takes longest

@@ -13,6 +13,19 @@
 namespace apps {
 namespace {
 
+constexpr const char* kImageScene = "scenes/box/scene.json";  // where gates are tried, too
+/// Where excluding surfaces from ellipsoidal connections is tried: a relay wall, a curved one, and
+/// a back wall with its neighbours.
+const std::vector<std::string> kExclusionScenes{
+    "scenes/bars/scene.json", "scenes/curved/scene.json", "scenes/corner/scene.json"};
+/// Confocal scans on which third_bounce and path are compared bin by bin.
+const std::vector<std::string> kAgreementScenes{"scenes/letter/scene.json",
+                                                "scenes/bars/scene.json",
+                                                "scenes/corner/scene.json",
+                                                "scenes/glossy/scene.json",
+                                                "scenes/animal/scene.json",
+                                                "scenes/curved/scene.json"};
+
 double share_where(const core::Json& rows, const char* key) {
     const auto holds = [&](const core::Json& row) { return row[key] == true; };
     return share_of(std::count_if(rows.begin(), rows.end(), holds), rows.size());
@@ -132,7 +145,7 @@ void measure_gates(const RenderBenchSettings& settings,
                    const core::Progress& progress,
                    BenchResult& result) {
     for (const auto& [path, max_bounces] :
-         {std::pair(settings.scene, 3), {settings.scene, 5}, {settings.camera_scene, 0}}) {
+         {std::pair(settings.scene, 3), {settings.scene, 5}, {std::string(kImageScene), 0}}) {
         const GateTable table = bench_gates(path, max_bounces, runs, progress);
         const auto scene = std::filesystem::path(path).parent_path().filename();
         result.plots[fmt::format("_gates_{}_{}", scene.string(), table.max_bounces)] =
@@ -144,18 +157,6 @@ void measure_gates(const RenderBenchSettings& settings,
 void declare_render_bench(Command& command) {
     auto& settings = add_benchmark(command, measure_render);
     add_setting(command, "--scene", settings.scene, "Scene description")->type_name("FILE");
-    add_setting(command, "--camera-scene", settings.camera_scene, "Image to try gates on")
-        ->type_name("FILE");
-    add_setting(command,
-                "--exclusion-scenes",
-                settings.exclusion_scenes,
-                "Scenes with surfaces to exclude from ellipsoidal connections")
-        ->type_name("FILE");
-    add_setting(command,
-                "--agreement-scenes",
-                settings.agreement_scenes,
-                "Confocal scans on which third_bounce and path are compared bin by bin")
-        ->type_name("FILE");
     add_setting(command, "--part", settings.part, "What to measure")
         ->check(
             one_of({"all", "curves", "third_bounce", "accuracy", "gates", "exclusion", "scaling"}));
@@ -194,12 +195,12 @@ BenchResult measure_render(const RenderBenchSettings& settings, const core::Prog
         figures["third_bounce"] = bench_third_bounce_costs(settings.scene, settings.repeats);
     }
     if (settings.has("accuracy")) {
-        figures["agreement"] = bench_agreement(settings.agreement_scenes, progress);
+        figures["agreement"] = bench_agreement(kAgreementScenes, progress);
         figures["target_errors"] = bench_target_errors(settings.quick ? 6 : 24, progress);
     }
     if (settings.has("gates")) measure_gates(settings, gate_runs, progress, result);
     if (settings.has("exclusion")) {
-        for (const std::string& path : settings.exclusion_scenes) {
+        for (const std::string& path : kExclusionScenes) {
             bench_exclusion(path, gate_runs, figures["exclusion"]);
         }
     }

@@ -212,31 +212,24 @@ void bench_sequence(const SequenceCase& sequence,
     }
 }
 
-/// What the standard table is made of.
 struct SequenceArguments {
-    std::string scan = "scenes/bars/scene.json";
-    std::string image = "scenes/room/scene.json";
-    std::array<int, 2> image_resolution{128, 96};
-    std::string moving_scan = "scenes/traffic/scan.json";
-    std::string moving_image = "scenes/traffic/scene.json";
     std::string only;
-    int frames = 60;
     int repeats = 4;
 };
 
-std::vector<SequenceCase> standard_sequences(const SequenceArguments& arguments) {
-    const std::string resolution = fmt::format(
-        "camera.resolution=[{},{}]", arguments.image_resolution[0], arguments.image_resolution[1]);
-    const SequenceCase third{"scan, order 3", arguments.scan, {"render.max_bounces=3"}, 1.4};
-    SequenceCase fifth{"scan, order 5", arguments.scan, {"render.max_bounces=5"}, 1.4};
+std::vector<SequenceCase> standard_sequences() {
+    const std::string scan = "scenes/bars/scene.json";
+    const std::string resolution = "camera.resolution=[128,96]";
+    const SequenceCase third{"scan, order 3", scan, {"render.max_bounces=3"}, 1.4};
+    SequenceCase fifth{"scan, order 5", scan, {"render.max_bounces=5"}, 1.4};
     fifth.reference_samples = 4'096;
     const SequenceCase image{
-        "camera, 5 vertices", arguments.image, {"render.max_bounces=5", resolution}, 2.6};
+        "camera, 5 vertices", "scenes/room/scene.json", {"render.max_bounces=5", resolution}, 2.6};
     SequenceCase moving_scan{
-        "scan, moving objects", arguments.moving_scan, {"render.max_bounces=3"}, 1.7};
+        "scan, moving objects", "scenes/traffic/scan.json", {"render.max_bounces=3"}, 1.7};
     moving_scan.frame_s = 1e-3;
     SequenceCase moving_image{"camera, moving objects",
-                              arguments.moving_image,
+                              "scenes/traffic/scene.json",
                               {"render.max_bounces=4", resolution},
                               6.0};
     moving_image.frame_s = 1e-3;
@@ -248,7 +241,6 @@ std::vector<SequenceCase> standard_sequences(const SequenceArguments& arguments)
         added.name += fmt::format(", {}/{} mm", width_mm, step_mm);
         added.gate_width_mm = width_mm;
         added.gate_step_mm = step_mm;
-        added.num_frames = arguments.frames;
     };
     const std::vector<std::array<double, 2>> gates{
         {20, 20}, {20, 5}, {10, 10}, {10, 2.5}, {5, 2.5}, {2, 2}, {20, 0}};
@@ -327,7 +319,7 @@ void add_plot(const core::Json& row, std::map<std::string, nlos::Plot>& plots) {
 
 BenchResult measure(const SequenceArguments& arguments, const core::Progress& progress) {
     std::vector<core::Json> rows;
-    for (const SequenceCase& sequence : standard_sequences(arguments)) {
+    for (const SequenceCase& sequence : standard_sequences()) {
         if (sequence.name.find(arguments.only) == std::string::npos) continue;
         bench_sequence(sequence, standard_methods(sequence), arguments.repeats, progress, rows);
     }
@@ -338,17 +330,7 @@ BenchResult measure(const SequenceArguments& arguments, const core::Progress& pr
 
 void declare_sequences_bench(Command& command) {
     auto& arguments = add_benchmark(command, measure);
-    add_setting(command, "--scene", arguments.scan, "Scan")->type_name("FILE");
-    add_setting(command, "--image-scene", arguments.image, "Camera")->type_name("FILE");
-    CLI::Option* resolution = add_setting(
-        command, "--image-resolution", arguments.image_resolution, "Pixels, width and height");
-    limit(*resolution, {1, true, 10'000, true});
-    add_setting(command, "--moving-scene", arguments.moving_scan, "Scan of objects that move")
-        ->type_name("FILE");
-    add_setting(command, "--moving-image-scene", arguments.moving_image, "Camera on such objects")
-        ->type_name("FILE");
     command.add_option("--only", arguments.only, "Sequences whose names contain this");
-    add_setting(command, "--frames", arguments.frames, "Frames of a sequence", {2, 10'000});
     add_setting(command, "--repeats", arguments.repeats, "Runs per method", {1, 1000});
 }
 
