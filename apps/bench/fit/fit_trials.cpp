@@ -57,7 +57,7 @@ core::WallScan trial_scan() {
     constexpr int kPoints = 16;
     renderer::SceneDescription description;
     description.scan.sensing_points = {kPoints, kPoints};
-    return renderer::make_scan(description);
+    return renderer::make_scan(description).wall();
 }
 
 core::TimeAxis trial_axis() {
