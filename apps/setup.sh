@@ -9,7 +9,7 @@ packages=(
     libembree-dev libtbb-dev libtinygltf-dev nlohmann-json3-dev libfmt-dev libcli11-dev
     libeigen3-dev libfftw3-dev libhdf5-dev libmatio-dev libopenexr-dev libflann-dev liblz4-dev libopencv-dev
     libcairo2-dev libfreetype-dev fonts-dejavu-core libpng-dev libturbojpeg0-dev zlib1g-dev libxxhash-dev libmeshoptimizer-dev
-    libceres-dev libisal-dev libzip-dev libassimp-dev libpugixml-dev libyaml-cpp-dev
+    libceres-dev libisal-dev libzip-dev libpugixml-dev libyaml-cpp-dev
     libjs-three libgtest-dev
     "$@"
 )

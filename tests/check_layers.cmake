@@ -10,7 +10,7 @@ cmake_minimum_required(VERSION 3.25)
 
 set(floors_renderer
     "renderer/core"
-    "renderer/core/capture"
+    "renderer/core/capture|renderer/core/mesh_formats"
     "renderer/settings|renderer/material|renderer/triangle"
     "renderer/gltf|renderer/mesh_file|renderer/film"
     "renderer/scene"
@@ -56,7 +56,6 @@ set(anywhere
     "Eigen/|tbb/|nlohmann/|fmt/|sys/|unistd\\.h|spawn\\.h|fcntl\\.h|poll\\.h|dlfcn\\.h|link\\.h|immintrin\\.h|experimental/simd")
 set(third_renderer/core "flann/|malloc\\.h")
 set(third_renderer/gltf "tiny_gltf")
-set(third_renderer/mesh_file "assimp/")
 set(third_renderer/scene "embree[34]/")
 set(third_renderer/scene_import "pugixml\\.hpp|yaml-cpp/")
 set(third_nlos/containers "hdf5\\.h|matio\\.h|zip\\.h|OpenEXR/")

@@ -9,10 +9,10 @@
 #include "calib/fit_file.h"
 #include "calib/track/compare_tracks.h"
 #include "nlos/formats/capture_file.h"
-#include "nlos/formats/ply_file.h"
 #include "nlos/formats/volume_file.h"
 #include "nlos/pictures/picture.h"
 #include "nlos/pictures/pictures.h"
+#include "renderer/core/mesh_formats/mesh_formats.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/settings_json.h"
 #include "renderer/scene/load_geometry.h"
@@ -30,7 +30,7 @@ core::PointCloud points_of_file(const std::string& path) {
     if (std::filesystem::path(path).extension() != ".ply") {
         return surface_samples(renderer::load_geometry(path));
     }
-    const core::TriangleMesh mesh = nlos::read_ply(path);
+    const core::TriangleMesh mesh = core::read_mesh_file(path).mesh;
     if (mesh.triangles.empty()) return {mesh.vertices, mesh.normals};
     return core::sample_surface(mesh, kSurfaceSamples, kSurfaceSeed);
 }

@@ -5,11 +5,11 @@
 #include "calib/fit_file.h"
 #include "nlos/containers/array_reader.h"
 #include "nlos/formats/capture_file.h"
-#include "nlos/formats/ply_file.h"
 #include "nlos/formats/volume_file.h"
 #include "nlos/layouts/layout_guess.h"
 #include "nlos/preparation/capture_check.h"
 #include "renderer/core/capture/recorded_detector.h"
+#include "renderer/core/mesh_formats/mesh_formats.h"
 #include "renderer/core/settings_json.h"
 
 #include <fmt/ranges.h>
@@ -93,7 +93,7 @@ void describe_volume(std::string& out, const std::string& path) {
 }
 
 void describe_ply(std::string& out, const std::string& path) {
-    const core::TriangleMesh points = nlos::read_ply(path);
+    const core::TriangleMesh points = core::read_mesh_file(path).mesh;
     if (!points.triangles.empty()) return describe_geometry(out, path);
     add_line(out, "format: PLY\npoints: {}", points.vertices.size());
 }

@@ -6,11 +6,11 @@
 #include "apps/terminal.h"
 #include "apps/version.h"
 #include "calib/calibrate.h"
-#include "nlos/formats/ply_file.h"
 #include "nlos/formats/volume_file.h"
 #include "nlos/pictures/picture.h"
 #include "nlos/pictures/pictures.h"
 #include "nlos/reconstruction/surface_mesh.h"
+#include "renderer/core/mesh_formats/ply_writer.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/settings_json.h"
 #include "renderer/gltf/gltf.h"
@@ -67,7 +67,7 @@ nlos::Reconstruction reconstruct_to_file(const ReconstructRequest& request) {
     for (const std::string& path : {own_picture, request.picture}) {
         if (!path.empty()) nlos::write_panels(path, nlos::volume_panels(result), 2);
     }
-    if (!request.ply.empty()) nlos::write_ply(request.ply, result.points);
+    if (!request.ply.empty()) core::write_ply(request.ply, result.points);
     if (!request.glb.empty()) write_surface(request.glb, nlos::surface_mesh(result.depth));
     return result;
 }

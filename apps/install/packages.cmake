@@ -25,7 +25,7 @@ fits models to them, and compares results with ground truth.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libnlos-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "pkg-config, libembree-dev, libtbb-dev, libtinygltf-dev, nlohmann-json3-dev, libfmt-dev, libeigen3-dev, libfftw3-dev, libhdf5-dev, libmatio-dev, libopenexr-dev, libflann-dev, liblz4-dev, libopencv-dev, libcairo2-dev, libfreetype-dev, libpng-dev, libturbojpeg0-dev, zlib1g-dev, libceres-dev, libisal-dev, libzip-dev, libassimp-dev, libpugixml-dev, libyaml-cpp-dev")
+    "pkg-config, libembree-dev, libtbb-dev, libtinygltf-dev, nlohmann-json3-dev, libfmt-dev, libeigen3-dev, libfftw3-dev, libhdf5-dev, libmatio-dev, libopenexr-dev, libflann-dev, liblz4-dev, libopencv-dev, libcairo2-dev, libfreetype-dev, libpng-dev, libturbojpeg0-dev, zlib1g-dev, libceres-dev, libisal-dev, libzip-dev, libpugixml-dev, libyaml-cpp-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "The renderer of transients, the reconstructors and the fits of the program
 nlos as static libraries, with headers and a package for CMake.")
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "apps/python/bindings.h"
-#include "nlos/formats/ply_file.h"
 #include "nlos/formats/volume_file.h"
 #include "nlos/pictures/pictures.h"
 #include "nlos/reconstruction/surface_mesh.h"
+#include "renderer/core/mesh_formats/ply_writer.h"
 #include "renderer/core/settings_json.h"
 
 #include <fmt/core.h>
@@ -58,7 +58,7 @@ void write(const Reconstruction& result, nb::handle target) {
     const std::string path = path_from(target);
     with_files([&] {
         if (path.ends_with(".ply")) {
-            nlos::write_ply(path, result.points);
+            core::write_ply(path, result.points);
         } else {
             nlos::write_volume(path, result);
         }

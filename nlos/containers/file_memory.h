@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "renderer/core/process.h"
+
 #include <cstdint>
-#include <string>
 
 namespace nlos {
 
@@ -10,7 +11,6 @@ namespace nlos {
 /// larger than so many times what is stored is damaged.
 inline constexpr std::uint64_t kLargestDeflateRatio = 1100;
 
-/// Throws core::Failure, with both numbers, when the machine cannot give `bytes` of memory.
-void require_memory(std::uint64_t bytes, const std::string& where);
+using core::require_memory;
 
 }  // namespace nlos

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/process.h"
 
+#include "renderer/core/error.h"
+
+#include <fmt/core.h>
 #include <sys/resource.h>
 #include <unistd.h>
 #ifdef __GLIBC__
@@ -41,6 +44,17 @@ std::uint64_t available_memory_bytes() {
     }
     const auto pages = static_cast<std::uint64_t>(sysconf(_SC_AVPHYS_PAGES));
     return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+void require_memory(std::uint64_t bytes, const std::string& where) {
+    constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
+    const std::uint64_t available = available_memory_bytes();
+    if (bytes > available) {
+        throw Failure(where,
+                      fmt::format("needs {:.1f} GiB of memory, {:.1f} GiB are free",
+                                  static_cast<double>(bytes) / kGibibyte,
+                                  static_cast<double>(available) / kGibibyte));
+    }
 }
 
 double cpu_seconds() {

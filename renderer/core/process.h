@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace core {
 
@@ -14,6 +15,9 @@ void reset_peak_rss();
 
 /// Memory that the machine can still give [bytes].
 std::uint64_t available_memory_bytes();
+
+/// Throws Failure, with both numbers, when the machine cannot give `bytes` of memory.
+void require_memory(std::uint64_t bytes, const std::string& where);
 
 /// CPU time of all threads of this process so far [s].
 double cpu_seconds();

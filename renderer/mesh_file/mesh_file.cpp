@@ -2,24 +2,21 @@
 #include "renderer/mesh_file/mesh_file.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/mapped_file.h"
-#include "renderer/core/nearest_name.h"
-#include "renderer/mesh_file/assimp_file.h"
+#include "renderer/core/mesh_formats/mesh_formats.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <bit>
 #include <filesystem>
+#include <span>
+#include <unordered_map>
 
 namespace renderer {
 namespace {
 
 namespace fs = std::filesystem;
 using core::Vec3;
-
-std::string lower_suffix(const std::string& path) {
-    return core::lower_case(fs::path(path).extension().string());
-}
 
 /// The rows are where the world's x, y and z point in the file.
 core::Mat3 world_from_axes(FileAxis up) {
@@ -33,7 +30,7 @@ core::Mat3 world_from_axes(FileAxis up) {
     return Eigen::Map<const Rows>(kRows[static_cast<std::size_t>(up)]);
 }
 
-Material material_of(const FileMaterial& source, const std::string& path) {
+Material material_of(const core::FileMaterial& source, const std::string& path) {
     for (const double value : source.colour) {
         if (value >= 0.0 && value <= 1.0) continue;
         throw core::Error(path + ": material " + source.name,
@@ -51,66 +48,101 @@ Material material_of(const FileMaterial& source, const std::string& path) {
     return material;
 }
 
-core::TriangleMesh world_mesh(const FileMesh& source,
-                              const core::Mat3& world_from_file,
-                              const std::string& path) {
-    core::TriangleMesh mesh;
-    for (const auto& [x, y, z] : source.vertices) {
-        mesh.vertices.push_back(world_from_file * Vec3(x, y, z));
-        if (!mesh.vertices.back().allFinite()) {
-            throw core::Error(path, "has a vertex that is not finite", "must have finite ones");
+struct PlaceHash {
+    std::size_t operator()(const Vec3& place) const {
+        constexpr std::size_t kGolden = 0x9e3779b97f4a7c15;
+        std::size_t hash = 0;
+        for (const double coordinate : place) {
+            hash = std::rotl(hash ^ std::hash<double>{}(coordinate), 29) * kGolden;
         }
+        return hash;
     }
-    for (const auto& triangle : source.triangles) {
-        const auto& [a, b, c] = triangle;
-        const Vec3& corner = mesh.vertices[a];
-        if (core::has_area(mesh.vertices[b] - corner, mesh.vertices[c] - corner)) {
-            mesh.triangles.push_back(triangle);
-        }
+};
+
+/// Of each vertex the first one at the same place, to the last bit.
+std::vector<std::uint32_t> first_at_same_place(const std::vector<Vec3>& vertices) {
+    std::unordered_map<Vec3, std::uint32_t, PlaceHash> first_at(vertices.size());
+    std::vector<std::uint32_t> first;
+    for (const Vec3& vertex : vertices) {
+        const auto number = static_cast<std::uint32_t>(first.size());
+        first.push_back(first_at.try_emplace(vertex, number).first->second);
     }
-    return mesh;
+    return first;
 }
 
-std::string object_name(const FileMesh& mesh, const std::string& path) {
-    // What assimp calls parts that the file does not name.
-    const bool is_named = !mesh.name.empty() && mesh.name != "defaultobject" &&
-                          !mesh.name.starts_with("<") && mesh.name != fs::path(path).filename();
-    return is_named ? mesh.name : fs::path(path).stem().string();
-}
+using Triangles = std::span<const std::array<std::uint32_t, 3>>;
 
-void add_warnings(const AssimpFile& file, std::vector<std::string>& warnings) {
+/// Cuts parts out of a file's mesh. Corners at one place are one vertex of a part, in the order of
+/// their first use.
+class PartCutter {
+ public:
+    PartCutter(const std::vector<Vec3>& vertices, const core::Mat3& world_from_file)
+        : vertices_(vertices),
+          world_from_file_(world_from_file),
+          first_(first_at_same_place(vertices)),
+          number_(vertices.size(), kNone) {}
+
+    core::TriangleMesh cut(Triangles triangles) {
+        core::TriangleMesh part;
+        for (std::array<std::uint32_t, 3> triangle : triangles) {
+            for (std::uint32_t& corner : triangle) corner = number_in(part, first_[corner]);
+            const auto& [a, b, c] = triangle;
+            const Vec3& corner = part.vertices[a];
+            if (core::has_area(part.vertices[b] - corner, part.vertices[c] - corner)) {
+                part.triangles.push_back(triangle);
+            }
+        }
+        for (const auto& triangle : triangles) {
+            for (const std::uint32_t corner : triangle) number_[first_[corner]] = kNone;
+        }
+        return part;
+    }
+
+ private:
+    static constexpr std::uint32_t kNone = ~0U;
+
+    std::uint32_t number_in(core::TriangleMesh& part, std::uint32_t vertex) {
+        std::uint32_t& number = number_[vertex];
+        if (number == kNone) {
+            number = static_cast<std::uint32_t>(part.vertices.size());
+            part.vertices.push_back(world_from_file_ * vertices_[vertex]);
+        }
+        return number;
+    }
+
+    const std::vector<Vec3>& vertices_;
+    core::Mat3 world_from_file_;
+    std::vector<std::uint32_t> first_;
+    std::vector<std::uint32_t> number_;  ///< in the part that is being cut
+};
+
+void add_warnings(const core::FileMesh& file, std::vector<std::string>& warnings) {
     warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
-    for (const FileMaterial& material : file.materials) {
+    for (const core::FileMaterial& material : file.materials) {
         for (const std::string& text : material.warnings) {
             warnings.push_back("material " + material.name + ": " + text);
         }
     }
 }
 
-void require_readable(const std::string& path) {
-    constexpr const char* kAllowed = "must be a readable OBJ, PLY or STL file";
-    std::error_code ignored;
-    if (!fs::exists(path, ignored)) throw core::Error(path, "does not exist", kAllowed);
-    core::MappedFile(path, kAllowed).require_stored();
-}
-
 }  // namespace
 
 bool is_mesh_file(const std::string& path) {
-    const std::string suffix = lower_suffix(path);
-    return suffix == ".obj" || suffix == ".ply" || suffix == ".stl";
+    return core::mesh_format(path) != nullptr;
 }
 
 SceneGeometry load_mesh_file(const std::string& path, const MeshFrame& frame) {
-    require_readable(path);
-    const AssimpFile file = read_with_assimp(path, lower_suffix(path));
-    const core::Mat3 world_from_file = frame.unit_m * world_from_axes(frame.up);
+    const core::FileMesh file = core::read_mesh_file(path);
+    PartCutter cutter(file.mesh.vertices, frame.unit_m * world_from_axes(frame.up));
     SceneGeometry geometry;
-    for (const FileMesh& source : file.meshes) {
+    std::size_t begin = 0;
+    for (const core::FilePart& part : file.parts) {
         Object object;
-        object.name = object_name(source, path);
-        object.material = material_of(file.materials.at(source.material), path);
-        object.mesh = world_mesh(source, world_from_file, path);
+        object.name =
+            part.name.empty() ? fs::path(path).stem().string() : core::printable(part.name);
+        object.material = material_of(file.materials.at(part.material), path);
+        object.mesh = cutter.cut(Triangles(file.mesh.triangles).subspan(begin, part.end - begin));
+        begin = part.end;
         if (object.mesh.triangles.empty()) continue;
         Eigen::AlignedBox3d box;
         for (const Vec3& vertex : object.mesh.vertices) box.extend(vertex);

@@ -8,7 +8,7 @@ bin=build/fuzz/tests/fuzz
 mkdir -p build/fuzz/findings
 [ -d build/fuzz/seeds ] || "$bin/write_fuzz_seeds" build/fuzz/seeds
 status=0
-for name in ${2:-capture volume point_list mat5 mat73 npy npz ti json csv ply glb gltf scene response obj stl mesh_ply mitsuba mitsuba_json ytal}; do
+for name in ${2:-capture volume point_list mat5 mat73 npy npz ti json csv ply glb gltf scene response obj stl mitsuba mitsuba_json ytal}; do
     fuzzer=$name
     case $name in mat5 | mat73 | npy | npz | ti | json | csv) fuzzer=arrays ;; esac
     mkdir -p "build/fuzz/corpus/$name"

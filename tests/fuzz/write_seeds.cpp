@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Writes the files that fuzzing starts from: one folder per fuzzer.
 #include "nlos/formats/capture_file.h"
-#include "nlos/formats/ply_file.h"
 #include "nlos/formats/volume_file.h"
 #include "tests/nlos/containers/example_bytes.h"
 #include "tests/nlos/containers/example_mat5.h"
@@ -83,29 +82,20 @@ void write_arrays(const std::string& folder) {
     write("/csv/blanks.csv", "1 2.5\n3 -4e5\n");
 }
 
-void write_meshes(const std::string& folder) {
-    core::TriangleMesh mesh;
-    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    mesh.triangles = {{0, 1, 2}};
-    nlos::write_ply(folder + "/binary.ply", mesh);
-    test_support::write_file_bytes(
-        folder + "/ascii.ply",
-        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
-        "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-        "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-}
-
 void write_mesh_files(const std::string& folder) {
     const core::TriangleMesh mesh = mesh_file_test::example_mesh();
     for (const bool is_binary : {false, true}) {
         const std::string name = is_binary ? "/binary" : "/text";
-        test_support::write_file_bytes(folder + "/mesh_ply" + name + ".ply",
+        test_support::write_file_bytes(folder + "/ply" + name + ".ply",
                                        mesh_file_test::ply_bytes(mesh, is_binary));
         test_support::write_file_bytes(folder + "/stl" + name + ".stl",
                                        mesh_file_test::stl_bytes(mesh, is_binary));
     }
-    test_support::write_file_bytes(folder + "/obj/a.obj",
-                                   "o a\nusemtl b\n" + mesh_file_test::obj_text(mesh));
+    // The fuzzer's file is its own material file, so that both readers see it.
+    test_support::write_file_bytes(
+        folder + "/obj/a.obj",
+        "mtllib mesh.obj\no a\ng b\nusemtl c\n" + mesh_file_test::obj_text(mesh) +
+            "f -1/1/1 -2 \\\n -3//2 1 # four\nnewmtl c\nKd .5 .5 .5\nPm 1\nPr .2\nd 0.5\n");
 }
 
 void write_foreign_scenes(const std::string& folder) {
@@ -141,27 +131,10 @@ void write_scenes(const std::string& folder) {
 int main(int argc, char** argv) {
     if (argc != 2) return 2;
     const std::string folder = argv[1];
-    for (const char* name : {"capture",
-                             "volume",
-                             "point_list",
-                             "mat5",
-                             "mat73",
-                             "npy",
-                             "npz",
-                             "ti",
-                             "json",
-                             "csv",
-                             "ply",
-                             "glb",
-                             "gltf",
-                             "scene",
-                             "response",
-                             "obj",
-                             "stl",
-                             "mesh_ply",
-                             "mitsuba",
-                             "mitsuba_json",
-                             "ytal"}) {
+    for (const char* name :
+         {"capture",  "volume", "point_list", "mat5",    "mat73",        "npy",  "npz",
+          "ti",       "json",   "csv",        "ply",     "glb",          "gltf", "scene",
+          "response", "obj",    "stl",        "mitsuba", "mitsuba_json", "ytal"}) {
         fs::create_directories(folder + "/" + name);
     }
     write_captures(folder + "/capture");
@@ -169,7 +142,6 @@ int main(int argc, char** argv) {
     write_mats(folder, MAT_COMPRESSION_ZLIB);
     write_arrays(folder);
     nlos::write_volume(folder + "/volume/volume.h5", test_support::example_reconstruction());
-    write_meshes(folder + "/ply");
     write_mesh_files(folder);
     write_foreign_scenes(folder);
     write_scenes(folder);

@@ -6,7 +6,7 @@
 #include "apps/bench/statistics.h"
 #include "nlos/containers/array_reader.h"
 #include "nlos/formats/capture_file.h"
-#include "nlos/formats/ply_file.h"
+#include "renderer/core/mesh_formats/ply_writer.h"
 #include "renderer/core/settings_json.h"
 #include "renderer/scene/load_geometry.h"
 
@@ -199,7 +199,7 @@ core::Json RenderingTask::scene_request() const {
     for (const renderer::Object& object : renderer::load_geometry(scene_.description()).objects) {
         if (object.role == renderer::Role::RelayWall) continue;
         const std::string file = fmt::format("{}_{}.ply", stem_, meshes.size());
-        nlos::write_ply(
+        core::write_ply(
             file,
             task_.is_image() ? object.mesh : turned_to_wall(object.mesh, pose.linear().col(2)));
         meshes.push_back({{"file", file}, {"albedo", object.material.albedo}});

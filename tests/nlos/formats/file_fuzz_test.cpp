@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/capture_file.h"
-#include "nlos/formats/ply_file.h"
 #include "nlos/formats/volume_file.h"
 #include "renderer/core/capture/instrument_response.h"
 #include "renderer/core/error.h"
@@ -177,22 +176,6 @@ TEST(FileFuzz, MutatedFilesOfArraysAreReadOrRefused) {
                              "a.csv"}) {
         fuzz(folder.file(name), [&] { read_everything(folder.file(name)); });
     }
-}
-
-TEST(FileFuzz, MutatedPlyFilesAreReadOrRefused) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("mesh.ply");
-    core::TriangleMesh mesh;
-    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    mesh.triangles = {{0, 1, 2}};
-    write_ply(path, mesh);
-    fuzz(path, [&] { read_ply(path); });
-    test_support::write_file_bytes(
-        path,
-        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
-        "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-        "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-    fuzz(path, [&] { read_ply(path); });
 }
 
 }  // namespace

@@ -1,44 +1,43 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/formats/ply_file.h"
-
+#include "renderer/core/mesh_formats/mesh_formats.h"
+#include "renderer/core/mesh_formats/ply_writer.h"
 #include "tests/support/error_message.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
-namespace nlos {
+namespace core {
 namespace {
 
-using core::Vec3;
 using test_support::TemporaryFolder;
 
-core::TriangleMesh example_mesh() {
-    core::TriangleMesh mesh;
+TriangleMesh example_mesh() {
+    TriangleMesh mesh;
     mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.25, -2}};
     mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 1, 0}, {1, 0, 0}};
     mesh.triangles = {{0, 1, 2}, {0, 3, 1}};
     return mesh;
 }
 
-core::TriangleMesh read_text(const std::string& text) {
+TriangleMesh read_text(const std::string& text) {
     const TemporaryFolder folder;
     test_support::write_file_bytes(folder.file("a.ply"), text);
-    return read_ply(folder.file("a.ply"));
+    return read_mesh_file(folder.file("a.ply")).mesh;
 }
 
 TEST(PlyFile, PointCloudsSurviveTheRoundTrip) {
     const TemporaryFolder folder;
-    core::PointCloud points{example_mesh().vertices, example_mesh().normals};
+    PointCloud points{example_mesh().vertices, example_mesh().normals};
     write_ply(folder.file("a.ply"), points);
-    core::TriangleMesh read = read_ply(folder.file("a.ply"));
+    TriangleMesh read = read_mesh_file(folder.file("a.ply")).mesh;
     EXPECT_EQ(read.vertices, points.positions);
     EXPECT_EQ(read.normals, points.normals);
     EXPECT_TRUE(read.triangles.empty());
 
     points.normals.clear();
     write_ply(folder.file("a.ply"), points);
-    read = read_ply(folder.file("a.ply"));
+    read = read_mesh_file(folder.file("a.ply")).mesh;
     EXPECT_EQ(read.vertices, points.positions);
     EXPECT_TRUE(read.normals.empty());
 }
@@ -46,7 +45,7 @@ TEST(PlyFile, PointCloudsSurviveTheRoundTrip) {
 TEST(PlyFile, MeshesSurviveTheRoundTrip) {
     const TemporaryFolder folder;
     write_ply(folder.file("a.ply"), example_mesh());
-    const core::TriangleMesh read = read_ply(folder.file("a.ply"));
+    const TriangleMesh read = read_mesh_file(folder.file("a.ply")).mesh;
     EXPECT_EQ(read.vertices, example_mesh().vertices);
     EXPECT_EQ(read.normals, example_mesh().normals);
     EXPECT_EQ(read.triangles, example_mesh().triangles);
@@ -54,12 +53,12 @@ TEST(PlyFile, MeshesSurviveTheRoundTrip) {
 
 TEST(PlyFile, EmptyCloudsSurviveTheRoundTrip) {
     const TemporaryFolder folder;
-    write_ply(folder.file("a.ply"), core::PointCloud{});
-    EXPECT_TRUE(read_ply(folder.file("a.ply")).vertices.empty());
+    write_ply(folder.file("a.ply"), PointCloud{});
+    EXPECT_TRUE(read_mesh_file(folder.file("a.ply")).mesh.vertices.empty());
 }
 
 TEST(PlyFile, TextFilesWithPolygonsAndOtherPropertiesAreRead) {
-    const core::TriangleMesh mesh = read_text(
+    const TriangleMesh mesh = read_text(
         "ply\r\nformat ascii 1.0\r\ncomment by hand\r\nelement vertex 4\r\nproperty double x\r\n"
         "property uchar red\r\nproperty double y\r\nproperty float32 z\r\nelement extra 1\r\n"
         "property list uchar int numbers\r\nelement face 1\r\nproperty list uint8 int32 "
@@ -75,20 +74,30 @@ TEST(PlyFile, TextFilesWithPolygonsAndOtherPropertiesAreRead) {
 TEST(PlyFile, BinaryDoublesAreRead) {
     const double vertex[]{0.1, 0.2, 0.3};
     const std::string body(reinterpret_cast<const char*>(vertex), sizeof(vertex));
-    const core::TriangleMesh mesh = read_text(
+    const TriangleMesh mesh = read_text(
         "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty double x\n"
         "property double y\nproperty double z\nend_header\n" +
         body);
     EXPECT_EQ(mesh.vertices.at(0), Vec3(0.1, 0.2, 0.3));
 }
 
+TEST(PlyFile, NormalsThatAreNotFiniteAreLeftOut) {
+    const TriangleMesh mesh = read_text(
+        "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+        "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nend_header\n"
+        "0 0 0 0 0 1\n1 0 0 nan nan nan\n");
+    EXPECT_EQ(mesh.vertices.size(), 2U);
+    EXPECT_TRUE(mesh.normals.empty());
+}
+
 TEST(PlyFile, DamagedFilesAreNamed) {
     const std::string vertex = "element vertex 1\nproperty float x\nproperty float y\n";
     const std::string head = "ply\nformat ascii 1.0\n" + vertex;
-    EXPECT_ERROR_WITH(read_ply("/no/such.ply"), "/no/such.ply: cannot be opened");
+    EXPECT_ERROR_WITH(read_mesh_file("/no/such.ply"), "/no/such.ply: cannot be opened");
     EXPECT_ERROR_WITH(read_text("hello\n"), "is no PLY file");
     EXPECT_ERROR_WITH(read_text("ply\nformat ascii 1.0\n"), "is cut short");
-    EXPECT_ERROR_WITH(read_text("ply\nformat binary_big_endian 1.0\nend_header\n"), "big_endian");
+    EXPECT_ERROR_WITH(read_text("ply\nformat binary 1.0\nend_header\n"), "has format 'binary'");
+    EXPECT_ERROR_WITH(read_text("ply\nelement vertex 1\nend_header\n"), "does not say its format");
     EXPECT_ERROR_WITH(read_text(head + "end_header\n0 0\n"), "without x, y, z");
     EXPECT_ERROR_WITH(read_text(head + "property half z\nend_header\n"), "unknown type 'half'");
     EXPECT_ERROR_WITH(read_text(head + "property float z\nend_header\n0 0\n"), "is cut short");
@@ -110,9 +119,9 @@ TEST(PlyFile, EveryTruncationIsReported) {
     const std::string bytes = test_support::file_bytes(path);
     for (std::size_t length = 0; length < bytes.size(); ++length) {
         test_support::write_file_bytes(path, bytes.substr(0, length));
-        EXPECT_ERROR_WITH(read_ply(path), path) << length;
+        EXPECT_ERROR_WITH(read_mesh_file(path), path) << length;
     }
 }
 
 }  // namespace
-}  // namespace nlos
+}  // namespace core
