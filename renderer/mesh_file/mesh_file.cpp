@@ -10,7 +10,6 @@
 #include <bit>
 #include <filesystem>
 #include <span>
-#include <unordered_map>
 
 namespace renderer {
 namespace {
@@ -48,24 +47,27 @@ Material material_of(const core::FileMaterial& source, const std::string& path) 
     return material;
 }
 
-struct PlaceHash {
-    std::size_t operator()(const Vec3& place) const {
-        constexpr std::size_t kGolden = 0x9e3779b97f4a7c15;
-        std::size_t hash = 0;
-        for (const double coordinate : place) {
-            hash = std::rotl(hash ^ std::hash<double>{}(coordinate), 29) * kGolden;
-        }
-        return hash;
-    }
-};
-
 /// Of each vertex the first one at the same place, to the last bit.
 std::vector<std::uint32_t> first_at_same_place(const std::vector<Vec3>& vertices) {
-    std::unordered_map<Vec3, std::uint32_t, PlaceHash> first_at(vertices.size());
+    constexpr std::uint32_t kFree = ~0U;
+    const auto hash = [](const Vec3& place) {
+        constexpr std::size_t kGolden = 0x9e3779b97f4a7c15;
+        std::size_t bits = 0;
+        for (const double coordinate : place) {  // 0 and -0 are one place
+            bits = std::rotl(bits ^ std::bit_cast<std::size_t>(coordinate + 0.0), 29) * kGolden;
+        }
+        return bits ^ (bits >> 32);
+    };
+    std::vector<std::uint32_t> slots(std::bit_ceil(2 * vertices.size() + 1), kFree);
     std::vector<std::uint32_t> first;
+    first.reserve(vertices.size());
     for (const Vec3& vertex : vertices) {
-        const auto number = static_cast<std::uint32_t>(first.size());
-        first.push_back(first_at.try_emplace(vertex, number).first->second);
+        std::size_t slot = hash(vertex) & (slots.size() - 1);
+        while (slots[slot] != kFree && vertices[slots[slot]] != vertex) {
+            slot = (slot + 1) & (slots.size() - 1);
+        }
+        if (slots[slot] == kFree) slots[slot] = static_cast<std::uint32_t>(first.size());
+        first.push_back(slots[slot]);
     }
     return first;
 }

@@ -8,9 +8,7 @@
 namespace core {
 namespace {
 
-constexpr bool is_space(char c) {
-    return c == ' ' || (c >= '\t' && c <= '\r');
-}
+constexpr auto is_space = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
 
 }  // namespace
 

@@ -18,6 +18,10 @@ const MeshFormat* mesh_format(const std::string& path) {
     return nullptr;
 }
 
+void throw_damaged(const std::string& path, const std::string& found) {
+    throw Error(path, found, std::string("must be a complete ") + mesh_format(path)->name + " file");
+}
+
 FileMesh read_mesh_file(const std::string& path) {
     const MeshFormat* const format = mesh_format(path);
     if (format == nullptr)

@@ -26,6 +26,9 @@ extern const MeshFormat kStl;
 /// The format that a file's suffix names, in any case; null when it is none of these.
 const MeshFormat* mesh_format(const std::string& path);
 
+/// Throws Error for a file that is not what its suffix says.
+[[noreturn]] void throw_damaged(const std::string& path, const std::string& found);
+
 /// Reads a mesh file of the format that its suffix names; of an OBJ file also the material files
 /// (MTL) beside it.
 ///

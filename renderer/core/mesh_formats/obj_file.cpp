@@ -77,12 +77,12 @@ class ObjReader {
         std::string_view rest = line.rest;
         for (auto word = take_word(rest); !is_end(word); word = take_word(rest)) {
             const std::optional<double> number = number_of(word);
-            if (!number) throw_damaged(line, excerpt(word) + ", which is no number");
-            if (count == numbers.size()) throw_damaged(line, "a vertex of more than 7 numbers");
+            if (!number) refuse(line, excerpt(word) + ", which is no number");
+            if (count == numbers.size()) refuse(line, "a vertex of more than 7 numbers");
             numbers[count++] = *number;
         }
         if (count < 3 || count == 5) {
-            throw_damaged(line, fmt::format("a vertex of {} numbers", count));
+            refuse(line, fmt::format("a vertex of {} numbers", count));
         }
         has_colours_ = has_colours_ || count > 4;
         const double weight = count == 4 ? numbers[3] : 1.0;
@@ -97,11 +97,11 @@ class ObjReader {
             const auto [end, error] =
                 std::from_chars(word.data(), word.data() + word.size(), number);
             if (error != std::errc() || (end != word.data() + word.size() && *end != '/')) {
-                throw_damaged(line, "the corner " + excerpt(word));
+                refuse(line, "the corner " + excerpt(word));
             }
             if (number < 0) number += static_cast<std::int64_t>(vertices().size()) + 1;
             if (number < 1 || number > 0xffffffff) {
-                throw_damaged(line, "the corner " + excerpt(word) + ", which is no vertex");
+                refuse(line, "the corner " + excerpt(word) + ", which is no vertex");
             }
             polygons_.corners.push_back(static_cast<std::uint32_t>(number - 1));
         }
@@ -143,7 +143,7 @@ class ObjReader {
         const auto is_part_of_words = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
         if (!std::isalpha(static_cast<unsigned char>(line.keyword.front())) ||
             !std::ranges::all_of(line.keyword, is_part_of_words)) {
-            throw_damaged(line, excerpt(line.keyword) + " where a keyword should stand");
+            refuse(line, excerpt(line.keyword) + " where a keyword should stand");
         }
         if (unread_keyword_.empty()) unread_keyword_ = line.keyword;
     }
@@ -169,8 +169,8 @@ class ObjReader {
 
     static bool is_end(std::string_view word) { return word.empty() || word.starts_with('#'); }
 
-    [[noreturn]] void throw_damaged(const WavefrontLine& line, const std::string& found) const {
-        throw Error(path_, line.where() + " has " + found, "must be a complete OBJ file");
+    [[noreturn]] void refuse(const WavefrontLine& line, const std::string& found) const {
+        throw_damaged(path_, line.where() + " has " + found);
     }
 
     std::vector<Vec3>& vertices() { return file_.mesh.vertices; }

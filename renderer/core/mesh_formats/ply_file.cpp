@@ -69,10 +69,6 @@ struct Header {
     bool has_texture = false;
 };
 
-[[noreturn]] void throw_damaged(const std::string& path, const std::string& found) {
-    throw Error(path, found, "must be a complete PLY file, ASCII or binary");
-}
-
 const Scalar* find_scalar(const std::string& path, const std::string& name) {
     for (const Scalar& known : kScalars) {
         if (name == known.name || name == known.other) return &known;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/error.h"
 #include "renderer/core/mesh_formats/file_words.h"
 #include "renderer/core/mesh_formats/mesh_formats.h"
 #include "renderer/core/nearest_name.h"
@@ -16,10 +15,6 @@ constexpr std::size_t kHeaderBytes = 80;
 constexpr std::size_t kBodyBegin = kHeaderBytes + sizeof(std::uint32_t);
 constexpr std::size_t kNormalBytes = 3 * sizeof(float);
 constexpr std::size_t kTriangleBytes = 4 * kNormalBytes + sizeof(std::uint16_t);
-
-[[noreturn]] void throw_damaged(const std::string& path, const std::string& found) {
-    throw Error(path, found, "must be a complete STL file, ASCII or binary");
-}
 
 /// The triangle of the last three vertices.
 void add_triangle(TriangleMesh& mesh) {
