@@ -116,7 +116,7 @@ core::Capture record_with(const AppliedCalibration& calibration,
                           const core::Capture& rendered,
                           const core::TimeAxis& axis) {
     core::Capture result = rendered;
-    const std::vector<double> offsets = pair_offsets(calibration, rendered.scan);
+    const std::vector<double> offsets = pair_offsets(calibration, rendered.scan.wall());
     const double shift = axis.opl_start_m - rendered.time_axis.opl_start_m;
     std::vector<double> delays;
     for (const double offset : offsets) delays.push_back(offset - shift);

@@ -87,7 +87,7 @@ ThirdBounceVjp::ThirdBounceVjp(core::TriangleMesh mesh,
                                const core::Progress& progress)
     : mesh_((check_mesh(mesh, albedo), std::move(mesh))),
       albedo_(std::move(albedo)),
-      scan_((core::validate(scan), std::move(scan))),
+      scan_((core::validate(scan, kWhere), std::move(scan))),
       axis_(axis),
       settings_(settings),
       tree_(mesh_) {
