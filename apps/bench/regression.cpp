@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <string_view>
 
 namespace apps {
@@ -17,57 +16,58 @@ using core::Json;
 // How a figure is judged: a factor that is more than noise, or a difference.
 enum class Judgement { Factor, Difference, Target };
 
+/// Figures that say how good a run is; everything else describes what was run.
 struct Quantity {
-    Judgement judgement = Judgement::Factor;
-    double tolerance = 0.0;
+    Judgement judgement;
+    double tolerance;
+    std::vector<std::string_view> names;
 };
+const std::vector<Quantity> kQuantities{
+    // times
+    {Judgement::Factor,
+     1.25,
+     {"cpu_seconds",
+      "cpu_s",
+      "process_cpu_s",
+      "cpu_s_at_1_percent",
+      "seconds",
+      "seconds_per_frame"}},
+    // memory and errors
+    {Judgement::Factor,
+     1.1,
+     {"peak_bytes",
+      "peak_mb",
+      "bytes",
+      "rel_l2",
+      "rel_mse",
+      "trimmed_rel_mse",
+      "variance_seconds",
+      "depth_mae_m",
+      "depth_mae_mm",
+      "stated_mae_mm",
+      "depth_median_m",
+      "depth_rmse_m",
+      "normal_median_deg",
+      "position_rms_m",
+      "rotation_rms_deg"}},
+    // shares, of which more is better
+    {Judgement::Difference,
+     0.02,
+     {"mask_iou", "mask_iou_best", "accepted_share", "iou", "iou_best"}},
+    {Judgement::Target, 0.0, {"consistent", "holds", "met"}}};
 
-constexpr Quantity kTime{Judgement::Factor, 1.25};
-constexpr Quantity kMemory{Judgement::Factor, 1.1};
-constexpr Quantity kError{Judgement::Factor, 1.1};
-constexpr Quantity kShare{Judgement::Difference, 0.02};  // more is better
-constexpr Quantity kTarget{Judgement::Target, 0.0};
-
-// Figures that say how good a run is. Everything else describes what was run.
-const std::map<std::string_view, Quantity> kQuantities{{"cpu_seconds", kTime},
-                                                       {"cpu_s", kTime},
-                                                       {"process_cpu_s", kTime},
-                                                       {"cpu_s_at_1_percent", kTime},
-                                                       {"seconds", kTime},
-                                                       {"seconds_per_frame", kTime},
-                                                       {"ns", kTime},
-                                                       {"ns_checked", kTime},
-                                                       {"peak_bytes", kMemory},
-                                                       {"peak_mb", kMemory},
-                                                       {"bytes", kMemory},
-                                                       {"rel_l2", kError},
-                                                       {"rel_mse", kError},
-                                                       {"trimmed_rel_mse", kError},
-                                                       {"variance_seconds", kError},
-                                                       {"depth_mae_m", kError},
-                                                       {"depth_mae_mm", kError},
-                                                       {"stated_mae_mm", kError},
-                                                       {"depth_median_m", kError},
-                                                       {"depth_rmse_m", kError},
-                                                       {"normal_median_deg", kError},
-                                                       {"position_rms_m", kError},
-                                                       {"rotation_rms_deg", kError},
-                                                       {"mask_iou", kShare},
-                                                       {"mask_iou_best", kShare},
-                                                       {"accepted", kShare},
-                                                       {"accepted_share", kShare},
-                                                       {"iou", kShare},
-                                                       {"iou_best", kShare},
-                                                       {"consistent", kTarget},
-                                                       {"holds", kTarget},
-                                                       {"met", kTarget}};
+const Quantity* quantity_named(const std::string& name) {
+    const auto it = std::ranges::find_if(kQuantities, [&](const Quantity& quantity) {
+        return std::ranges::count(quantity.names, name) > 0;
+    });
+    return it == kQuantities.end() ? nullptr : &*it;
+}
 
 // Fields that name a row.
-constexpr std::array kNames{"name",        "scene",    "pattern",     "points",       "light",
-                            "capture",     "program",  "samples",     "target_error", "sequence",
-                            "method",      "choice",   "of",          "chart",        "gauge",
-                            "mode",        "effort",   "size",        "operation",    "gate_mm",
-                            "max_bounces", "center_m", "peak_counts", "at_rel_l2"};
+constexpr std::array kNames{
+    "name",    "scene",        "pattern",  "points",      "light",    "capture",     "program",
+    "samples", "target_error", "sequence", "method",      "choice",   "of",          "mode",
+    "effort",  "size",         "gate_mm",  "max_bounces", "center_m", "peak_counts", "at_rel_l2"};
 
 std::string name_of(const Json& row) {
     std::string name;
@@ -128,15 +128,15 @@ class Walk {
                        const Json& now,
                        const std::string& where,
                        const std::string& key) {
-        const auto quantity = kQuantities.find(key);
-        if (quantity == kQuantities.end()) {
+        const Quantity* quantity = quantity_named(key);
+        if (quantity == nullptr) {
             compare(before, now, where.empty() ? key : where + "/" + key);
         } else if (now.is_array() && before.is_array()) {
             for (std::size_t i = 0; i < std::min(now.size(), before.size()); ++i) {
-                judge(before[i], now[i], {where + "/" + std::to_string(i), key}, quantity->second);
+                judge(before[i], now[i], {where + "/" + std::to_string(i), key}, *quantity);
             }
         } else {
-            judge(before, now, {where, key}, quantity->second);
+            judge(before, now, {where, key}, *quantity);
         }
     }
 

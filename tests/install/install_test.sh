@@ -31,6 +31,7 @@ done
 moved/bin/nlos render "$share/nlos/scenes/letter/scene.json" -o letter.h5 \
     --set 'scan.sensing_points=[8,8]' time_axis.num_bins=64 >/dev/null
 moved/bin/nlos info letter.h5 >/dev/null
+moved/bin/nlos bench --help >/dev/null  # of the program beside it
 
 CMAKE_GENERATOR=Ninja sh "$consumer/build.sh" "$scratch/moved" "$scratch/consumer" \
     "$share/nlos/scenes/letter/scene.json" >build.log 2>&1 ||
