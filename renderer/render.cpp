@@ -28,7 +28,7 @@ struct Surfaces {
 Surfaces surfaces_of(const Scene& scene) {
     Surfaces surfaces;
     for (const Object& object : scene.objects()) {
-        if (object.role == Role::RelayWall || object.material.albedo == 0.0) continue;
+        if (object.role == Role::RelayWall || !reflects(object.material)) continue;
         (is_integrable(object.material) ? surfaces.integrable : surfaces.narrow_lobes) = true;
     }
     return surfaces;
@@ -48,11 +48,16 @@ void require_possible(const RenderTask& task) {
                               "found third_bounce for a camera",
                               "must be auto or path: there are no wall points");
         }
-        if (surfaces_of(task.scene).narrow_lobes) {
-            throw core::Error(
-                "render.method",
-                "found third_bounce for a scene with narrow glossy lobes or dielectrics",
-                "must be auto or path for such surfaces");
+        for (const Object& object : task.scene.objects()) {
+            const Material& material = object.material;
+            const bool adds = object.role != Role::RelayWall && reflects(material);
+            if (!adds || is_integrable(material)) continue;
+            throw core::Error("render.method",
+                              fmt::format("found third_bounce for object {} ({})",
+                                          object.name,
+                                          core::enum_name(material.model)),
+                              "must be auto or path for surfaces that it cannot integrate, such as "
+                              "narrow glossy lobes");
         }
     }
     if (!task.axes.velocity || !task.scan.has_wall()) return;

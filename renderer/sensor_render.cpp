@@ -119,7 +119,7 @@ std::optional<Scene> retroreflectors_of(const Scene& scene, const core::SensorSc
     bool any = false;
     for (Object& object : geometry.objects) {
         if (object.role == Role::RelayWall) continue;
-        if (object.material.model == SurfaceModel::Retroreflective) {
+        if (traits_of(object.material.model).returns_to_source) {
             any = any || object.material.albedo > 0.0;
         } else {
             object.material = {};

@@ -23,7 +23,7 @@ GeneratedScene make_glossy() {
               conductor("brushed", 0.8, 0.6));
     renderer::Material sheet = diffuse(0.7);
     sheet.name = "retroreflective";
-    sheet.model = renderer::SurfaceModel::Retroreflective;
+    sheet.model = renderer::model_of({.retroreflective = true});
     scene.add("sign",
               rotated(make_plate(0.24, 0.16), core::Vec3::UnitX(), 20.0),
               {0.0, -0.25, 0.6},

@@ -150,7 +150,7 @@ renderer::Material diffuse(double albedo) {
 renderer::Material conductor(const std::string& name, double albedo, double roughness) {
     renderer::Material material = diffuse(albedo);
     material.name = name;
-    material.model = renderer::SurfaceModel::Ggx;
+    material.model = renderer::model_of({.metallic = true});
     material.roughness = roughness;
     return material;
 }

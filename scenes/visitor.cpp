@@ -13,7 +13,7 @@ GeneratedScene make_visitor() {
              diffuse(0.5))
         .role = renderer::Role::BackWall;
     renderer::Material vest = diffuse(0.6);
-    vest.model = renderer::SurfaceModel::Retroreflective;
+    vest.model = renderer::model_of({.retroreflective = true});
     scene.add("visitor", make_box({0.45, 0.6, 0.25}), {-1.1, 0.1, 1.2}, vest).velocity_m_per_s = {
         0.8, 0.0, 0.1};
     return scene;

@@ -13,8 +13,7 @@ namespace {
 std::string describe_material(const renderer::Material& material) {
     std::string text =
         fmt::format("{}, albedo {:.3f}", core::enum_name(material.model), material.albedo);
-    if (material.model == renderer::SurfaceModel::Ggx ||
-        material.model == renderer::SurfaceModel::Dielectric) {
+    if (renderer::traits_of(material.model).has_lobe) {
         text += fmt::format(", roughness {:.2f}", material.roughness);
     }
     if (material.albedo_texture) text += " (textured)";

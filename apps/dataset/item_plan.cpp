@@ -82,7 +82,7 @@ renderer::Material draw_material(const ObjectDistributions& how, Rng& rng) {
     const bool is_metal = rng.uniform() < draw_number(how.glossy, rng);
     const double roughness = draw_number(how.roughness, rng);
     if (is_metal) {
-        material.model = renderer::SurfaceModel::Ggx;
+        material.model = renderer::model_of({.metallic = true});
         material.roughness = roughness;
     }
     return material;

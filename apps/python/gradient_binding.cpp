@@ -26,7 +26,7 @@ struct JoinedObjects {
 JoinedObjects join(const renderer::SceneGeometry& geometry) {
     JoinedObjects joined;
     for (const renderer::Object& object : geometry.objects) {
-        if (object.material.model != renderer::SurfaceModel::Lambertian ||
+        if (!renderer::traits_of(object.material.model).is_constant ||
             object.material.albedo_texture || object.role == renderer::Role::RelayWall) {
             throw core::Error("scene: object " + object.name,
                               "is textured, no Lambertian surface, or the relay wall",

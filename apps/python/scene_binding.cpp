@@ -57,7 +57,7 @@ void for_each_field(ObjectFields& s, Visitor&& visit) {
     visit("name", s.object.name, "of the object");
     visit("albedo", material.albedo, core::between(0, 1, "share of light that is reflected"));
     visit("surface", material.model, "how it reflects");
-    visit("roughness", material.roughness, core::between(0, 1, "of GGX surfaces"));
+    visit("roughness", material.roughness, core::between(0, 1, "of models with a lobe"));
     visit("role", s.object.role, "what it is to the measurement");
     visit("velocity_m_per_s", s.object.velocity_m_per_s, "world [m/s]");
 }

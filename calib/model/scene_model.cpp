@@ -24,10 +24,13 @@ std::vector<std::string> named(const std::string& owner, const std::vector<std::
 }
 
 void check_material(const renderer::Object& object) {
-    if (object.material.model == renderer::SurfaceModel::Ggx) {
+    const renderer::SurfaceTraits& traits = renderer::traits_of(object.material.model);
+    if (!traits.can_be_fitted()) {
         throw core::Error("model: object " + object.name,
-                          "is glossy",
-                          "must be Lambertian or retroreflective to be fitted");
+                          "is a " + std::string(traits.name),
+                          "must be " + renderer::model_names([](const auto& t) {
+                              return t.can_be_fitted();
+                          }) + " to be fitted");
     }
     if (object.material.albedo_texture) {
         throw core::Error(
@@ -151,7 +154,7 @@ void SceneModel::add_to_body(const renderer::NodeGroup& node,
         facet.body = body_index;
         facet.vertices = {welded[a], welded[b], welded[c]};
         facet.albedo_ratio = object.material.albedo / it->albedo;
-        facet.is_retroreflective = object.material.model == renderer::SurfaceModel::Retroreflective;
+        facet.is_retroreflective = renderer::traits_of(object.material.model).returns_to_source;
         facets_.push_back(facet);
     }
 }

@@ -6,10 +6,10 @@
 namespace renderer {
 namespace {
 
-// Share of the draws from a vertex with a narrow lobe that follow it.
+// Of the samples of a surface that follow a narrow lobe, the fraction that this technique does too.
 constexpr double kLobeShare = 0.75;
 
-// Lobes of a larger GGX alpha are not narrow: facets are then chosen by size and cosines alone.
+// Lobes of a larger alpha are not narrow: facets are then chosen by size and cosines alone.
 constexpr double kWidestLobe = 0.3;
 
 std::vector<std::uint32_t> kept_facets(const ExcludedFacets& excluded) {
@@ -78,9 +78,9 @@ ConnectionTechnique::ConnectionTechnique(const Scene& scene,
 std::optional<LobeOnFacet> ConnectionTechnique::lobe_of(const PathVertex& vertex,
                                                         const core::Vec3& light,
                                                         std::uint64_t& num_rays) const {
-    const auto* ggx = std::get_if<Ggx>(&vertex.bsdf);
-    if (ggx == nullptr || ggx->alpha > kWidestLobe) return std::nullopt;
     const double cosine = vertex.normal.dot(vertex.to_previous);
+    const auto lobe = renderer::lobe_of(vertex.bsdf, std::abs(cosine));
+    if (!lobe || lobe->alpha > kWidestLobe) return std::nullopt;
     const core::Vec3 mirrored = 2.0 * cosine * vertex.normal - vertex.to_previous;
     const core::Vec3 side = cosine < 0.0 ? core::Vec3(-vertex.normal) : vertex.normal;
     ++num_rays;
@@ -90,7 +90,8 @@ std::optional<LobeOnFacet> ConnectionTechnique::lobe_of(const PathVertex& vertex
     if (normal.dot(mirrored) * normal.dot(met->position - light) <= 0.0) return std::nullopt;
     // The lobe falls to half of its peak where the half vector is tilted by about alpha; the
     // direction turns by twice that angle.
-    return LobeOnFacet{met->facet, {mirrored, met->position, 2.0 * ggx->alpha}};
+    return LobeOnFacet{
+        met->facet, {mirrored, met->position, 2.0 * lobe->alpha}, kLobeShare * lobe->fraction};
 }
 
 // The facet that the lobe hits, with the probability that a draw takes it; 0 without a lobe or
@@ -100,7 +101,7 @@ FacetChoice ConnectionTechnique::choice_by_lobe(const ConnectionEnds& ends,
                                                 const std::optional<LobeOnFacet>& lobe) const {
     if (!lobe) return {};
     const OplBand part = hierarchy_.part_of(lengths, ends.foci, lobe->facet);
-    return {lobe->facet, part.width_m() > 0.0 ? kLobeShare : 0.0, part};
+    return {lobe->facet, part.width_m() > 0.0 ? lobe->probability : 0.0, part};
 }
 
 std::optional<ConnectionDraw> ConnectionTechnique::sample(

@@ -21,6 +21,7 @@ struct ConnectionDraw {
 struct LobeOnFacet {
     std::uint32_t facet = 0;
     ConnectionLobe lobe;
+    double probability = 0.0;  ///< that a draw follows it
 };
 
 /// The ends of the connections from a path's vertex to its light.
@@ -31,7 +32,8 @@ ConnectionEnds connection_ends(const PathEndpoints& ends);
 /// Draws the vertex between two others so that the path has a wanted length (source
 /// [Pediredla2019]): a facet from the hierarchy, a length within what the interval and the facet
 /// allow, a point where the ellipsoid of that length intersects the facet. Where the first vertex
-/// has a narrow lobe, most draws take the facet that the lobe's axis hits and stay near the axis.
+/// has a narrow lobe, draws that follow it take the facet that its axis hits and stay near the
+/// axis.
 class ConnectionTechnique {
  public:
     /// scene      must outlive the technique

@@ -179,9 +179,7 @@ class SceneReader {
                 auto& all = geometry_.warnings;
                 if (std::find(all.begin(), all.end(), text) == all.end()) all.push_back(text);
             }
-            if (extras.retroreflective.value_or(false)) {
-                object.material.model = SurfaceModel::Retroreflective;
-            }
+            object.material.model = extras.model_or(object.material.model);
             object.role = extras.role.value_or(Role::Hidden);
             object.ellipsoidal_exclude = extras.ellipsoidal_exclude.value_or(false);
             object.velocity_m_per_s = extras.velocity_m_per_s.value_or(core::Vec3::Zero());

@@ -10,10 +10,10 @@ namespace renderer {
 /// Reads a glTF 2.0 file, text (.gltf) or binary (.glb) by content, into world coordinates.
 ///
 /// Triangles, strips and fans become objects; points and lines are left out, triangles without area
-/// dropped. Metallic materials reflect by GGX, others are Lambertian (see
-/// render.dielectric_specular for the rest of what glTF says of these). The extras `nlos_role`,
-/// `nlos_ellipsoidal_exclude`, `nlos_velocity_m_per_s` and `nlos_retroreflective` are taken from
-/// the node, else from its nearest ancestor that has them, else from the material.
+/// dropped. Metallic materials are rough conductors, others diffuse (see render.dielectric_specular
+/// for the rest of what glTF says of these). The extras `nlos_role`, `nlos_ellipsoidal_exclude`,
+/// `nlos_velocity_m_per_s`, `nlos_retroreflective` and `nlos_surface_model` are taken from the
+/// node, else from its nearest ancestor that has them, else from the material.
 ///
 /// path      the file; external buffers and images are searched for beside it
 /// returns   at least one object, each with at least one triangle; perspective cameras

@@ -163,7 +163,7 @@ LoadedMaterial read_material(const GltfDocument& document, int index) {
 
     LoadedMaterial loaded;
     loaded.material.name = source.name;
-    loaded.material.model = pbr.metallicFactor > 0.0 ? SurfaceModel::Ggx : SurfaceModel::Lambertian;
+    loaded.material.model = model_of({.metallic = pbr.metallicFactor > 0.0});
     loaded.material.albedo = mean_albedo(factor);
     loaded.material.roughness = pbr.roughnessFactor;
     loaded.warnings = material_warnings(source, index);
@@ -197,12 +197,18 @@ void refuse_without_prefix(const std::string& key, const std::string& where) {
 
 }  // namespace
 
+SurfaceModel NlosExtras::model_or(SurfaceModel otherwise) const {
+    if (retroreflective.value_or(false)) return model_of({.retroreflective = true});
+    return surface_model.value_or(otherwise);
+}
+
 NlosExtras NlosExtras::or_else(const NlosExtras& fallback) const {
     NlosExtras merged = *this;
     if (!merged.role) merged.role = fallback.role;
     if (!merged.ellipsoidal_exclude) merged.ellipsoidal_exclude = fallback.ellipsoidal_exclude;
     if (!merged.velocity_m_per_s) merged.velocity_m_per_s = fallback.velocity_m_per_s;
     if (!merged.retroreflective) merged.retroreflective = fallback.retroreflective;
+    if (!merged.surface_model) merged.surface_model = fallback.surface_model;
     return merged;
 }
 

@@ -22,7 +22,10 @@ struct NlosExtras {
     std::optional<bool> ellipsoidal_exclude;
     std::optional<core::Vec3> velocity_m_per_s;
     std::optional<bool> retroreflective;
+    std::optional<SurfaceModel> surface_model;
 
+    /// The model of a surface that is `otherwise` where these extras say nothing of it.
+    SurfaceModel model_or(SurfaceModel otherwise) const;
     /// These values, and those of `fallback` where this has none.
     NlosExtras or_else(const NlosExtras& fallback) const;
 };
@@ -33,6 +36,7 @@ void for_each_field(NlosExtras& extras, Visitor&& visit) {
     visit("nlos_ellipsoidal_exclude", extras.ellipsoidal_exclude, "no ellipsoidal connection here");
     visit("nlos_velocity_m_per_s", extras.velocity_m_per_s, "velocity, world [m/s]");
     visit("nlos_retroreflective", extras.retroreflective, "reflects light back where it came from");
+    visit("nlos_surface_model", extras.surface_model, "how it reflects, for what glTF cannot say");
 }
 
 /// Reads the nlos_ entries of the extras of `owner`, a node or material; others are left alone.

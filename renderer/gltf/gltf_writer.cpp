@@ -143,7 +143,10 @@ class ModelBuilder {
             extras.emplace("nlos_velocity_m_per_s",
                            tinygltf::Value(tinygltf::Value::Array(v.begin(), v.end())));
         }
-        if (object.material.model == SurfaceModel::Retroreflective) {
+        const SurfaceTraits& surface = traits_of(object.material.model);
+        if (!surface.gltf || surface.gltf->specular) {
+            extras.emplace("nlos_surface_model", tinygltf::Value(std::string(surface.name)));
+        } else if (surface.gltf->retroreflective) {
             extras.emplace("nlos_retroreflective", tinygltf::Value(true));
         }
         return extras.empty() ? tinygltf::Value() : tinygltf::Value(std::move(extras));
@@ -174,7 +177,8 @@ class ModelBuilder {
         target.name = material.name;
         auto& pbr = target.pbrMetallicRoughness;
         pbr.baseColorFactor = {material.albedo, material.albedo, material.albedo, 1.0};
-        pbr.metallicFactor = material.model == SurfaceModel::Ggx ? 1.0 : 0.0;
+        pbr.metallicFactor =
+            traits_of(material.model).gltf.value_or(GltfSurface{}).metallic ? 1.0 : 0.0;
         pbr.roughnessFactor = material.roughness;
         if (material.albedo_texture) {
             if (object.uv.empty()) {

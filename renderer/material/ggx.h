@@ -32,7 +32,7 @@ template <class T>
     return core::sqrt(a2 + (1.0 - a2) * (cosine * cosine));
 }
 
-/// Value of renderer::Ggx [1/sr], without cosine.
+/// Value of GgxConductor [1/sr], without cosine.
 ///
 /// T                 double or core::Simd
 /// density           ggx_normal_density() of the half vector

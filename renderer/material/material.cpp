@@ -8,9 +8,6 @@
 namespace renderer {
 namespace {
 
-// Narrower GGX lobes are left to Monte Carlo.
-constexpr double kSmallestGlossyAlpha = 0.03;
-
 /// Column (or row) of the texel that a wrapped index means; works on doubles because texture
 /// coordinates may be far outside the range of an int.
 std::size_t wrapped_index(double index, int size, TextureWrap wrap) {
@@ -58,10 +55,10 @@ double srgb_from_linear(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
-bool is_integrable(const Material& material) {
-    if (material.model == SurfaceModel::Dielectric) return false;
-    return material.model != SurfaceModel::Ggx ||
-           material.roughness * material.roughness >= kSmallestGlossyAlpha;
+Bsdf make_bsdf(const Material& material) {
+    return make_bsdf(material.model,
+                     material.albedo,
+                     std::max(kSmallestGgxAlpha, material.roughness * material.roughness));
 }
 
 double mean_albedo(const std::array<double, 3>& linear) {

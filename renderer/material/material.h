@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/settings.h"
-#include "renderer/core/types.h"
+#include "renderer/material/bsdf.h"
 
 #include <array>
 #include <memory>
@@ -30,19 +29,26 @@ struct Texture {
 };
 
 /// How a surface reflects.
-enum class SurfaceModel { Lambertian, Ggx, Retroreflective, Dielectric };
-
 struct Material {
     std::string name;
-    SurfaceModel model = SurfaceModel::Lambertian;
+    SurfaceModel model{};
     double albedo = 1.0;                            ///< in [0, 1]
-    double roughness = 1.0;                         ///< in [0, 1]; of GGX lobes
+    double roughness = 1.0;                         ///< in [0, 1]; of models that have a lobe
     std::shared_ptr<const Texture> albedo_texture;  ///< multiplies the albedo; null: constant
 };
 
-/// True for surfaces whose third bounce the deterministic integrator takes: Lambertian and
-/// retroreflective ones, and conductors with GGX lobes wide enough to be smooth over an element.
-bool is_integrable(const Material& material);
+/// The BSDF of a material, where it has a texture that of the texture's white.
+Bsdf make_bsdf(const Material& material);
+
+/// True for surfaces whose third bounce the third-bounce integrator takes.
+inline bool is_integrable(const Material& material) {
+    return element_response(make_bsdf(material)).has_value();
+}
+
+/// False for surfaces that reflect nothing at all.
+inline bool reflects(const Material& material) {
+    return material.albedo > 0.0 || traits_of(material.model).reflects_when_black;
+}
 
 /// What a linear colour counts as: its mean over red, green and blue; equal components keep their
 /// value to the last bit.
@@ -55,9 +61,3 @@ double linear_from_srgb(double encoded);
 double srgb_from_linear(double linear);
 
 }  // namespace renderer
-
-template <>
-struct core::EnumNames<renderer::SurfaceModel> {
-    static constexpr auto value = names_from_zero<renderer::SurfaceModel>(
-        "lambertian", "ggx conductor", "retroreflective", "ggx dielectric");
-};

@@ -41,7 +41,7 @@ Material material_of(const core::FileMaterial& source, const std::string& path) 
     }
     Material material;
     material.name = source.name;
-    material.model = source.metallic > 0.0 ? SurfaceModel::Ggx : SurfaceModel::Lambertian;
+    material.model = model_of({.metallic = source.metallic > 0.0});
     material.albedo = mean_albedo(source.colour);
     material.roughness = std::clamp(source.roughness, 0.0, 1.0);
     return material;

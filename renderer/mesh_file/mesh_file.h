@@ -27,7 +27,7 @@ bool is_mesh_file(const std::string& path);
 /// as exporters of glTF do, x up about z. The origin of each is the centre of its box. Triangles
 /// without area are dropped. The diffuse colour of a material (Kd) is taken as linear, as it
 /// stands, and counts as its mean; without one the albedo is 1. Metals (Pm above 0) reflect by GGX
-/// with roughness Pr, all others are Lambertian.
+/// with roughness Pr, all others are diffuse.
 ///
 /// path      the file; material files (MTL) are searched for beside it
 /// returns   at least one object, each with at least one triangle; no cameras

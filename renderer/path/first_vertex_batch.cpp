@@ -46,8 +46,9 @@ FacetTraits::FacetTraits(const Scene& scene, const std::vector<bool>& adds_third
         is_hidden_[i] = scene.is_hidden(i) ? 1.0 : 0.0;
         if (!adds_third_bounce[scene.facet(i).object]) continue;
         const Material& material = scene.object_of(i).material;
-        if (material.model == SurfaceModel::Lambertian && !material.albedo_texture) {
-            constant_[i] = material.albedo / kPi;
+        const auto constant = constant_value(make_bsdf(material));
+        if (constant && !material.albedo_texture) {
+            constant_[i] = *constant;
         } else {
             varies_[i] = 1;
             any_varies_ = true;

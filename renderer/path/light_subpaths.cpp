@@ -90,7 +90,7 @@ LightSubpaths::Walked LightSubpaths::trace_walk(const Vec2& u,
     double ratio = 1.0 / pdf_first;
     walked.steps.push_back({vertex, ratio});
     while (static_cast<int>(walked.steps.size()) < max_vertices) {
-        const double survival = survival_of(vertex.bsdf);
+        const double survival = survival_at(vertex, vertex.to_previous);
         if (rng.uniform() >= survival) break;
         const PathVertex before = vertex;
         const auto pdf = walk_->draw_next(vertex, rng, walked.num_rays);
@@ -111,28 +111,27 @@ LightSubpaths::Walked LightSubpaths::trace_walk(const Vec2& u,
 void LightSubpaths::store(const Walked& walked) {
     for (std::size_t i = 0; i < walked.steps.size(); ++i) {
         const auto& [vertex, ratio] = walked.steps[i];
-        const auto* lambertian = std::get_if<Lambertian>(&vertex.bsdf);
+        const std::optional<double> constant = constant_value(vertex.bsdf);
         const bool is_back = vertex.normal.dot(vertex.to_previous) < 0.0;
         const Vec3 normal = is_back ? Vec3(-vertex.normal) : vertex.normal;
-        const bool has_step = lambertian != nullptr && i > 0;
+        const bool has_step = constant && i > 0;
         const double step =
             has_step ? walk_->pdf_area(vertex, normal, walked.steps[i - 1].vertex.point) : 1.0;
-        const std::array<double, kNumColumns> values{
-            vertex.point.position.x(),
-            vertex.point.position.y(),
-            vertex.point.position.z(),
-            normal.x(),
-            normal.y(),
-            normal.z(),
-            vertex.throughput * (lambertian != nullptr ? lambertian->albedo / kPi : 1.0),
-            vertex.extent.opl_m,
-            vertex.extent.velocity_m_per_s,
-            ratio * step};
+        const std::array<double, kNumColumns> values{vertex.point.position.x(),
+                                                     vertex.point.position.y(),
+                                                     vertex.point.position.z(),
+                                                     normal.x(),
+                                                     normal.y(),
+                                                     normal.z(),
+                                                     vertex.throughput * constant.value_or(1.0),
+                                                     vertex.extent.opl_m,
+                                                     vertex.extent.velocity_m_per_s,
+                                                     ratio * step};
         for (std::size_t c = 0; c < kNumColumns; ++c) columns_[c].push_back(values[c]);
         vertices_.push_back(vertex);
         depth_.push_back(static_cast<int>(i) + 1);
-        varies_.push_back(lambertian == nullptr ? 1 : 0);
-        any_varies_ = any_varies_ || lambertian == nullptr;
+        varies_.push_back(constant ? 0 : 1);
+        any_varies_ = any_varies_ || !constant;
     }
     walk_begin_.push_back(vertices_.size());
     num_rays_ += walked.num_rays;

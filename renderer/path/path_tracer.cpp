@@ -28,11 +28,10 @@ int num_subpaths(std::size_t num_pixels, int num_samples) {
 // Connections seldom hit narrow lobes and leave them to few walks: images would become noisier than
 // by walks alone.
 bool has_narrow_lobes(const Scene& scene) {
-    constexpr double kNarrow = 0.4;  // roughness
+    constexpr double kNarrowAlpha = 0.4 * 0.4;
     return std::ranges::any_of(scene.objects(), [](const Object& object) {
-        const Material& material = object.material;
-        return material.roughness < kNarrow &&
-               (material.model == SurfaceModel::Ggx || material.model == SurfaceModel::Dielectric);
+        const auto lobe = lobe_of(make_bsdf(object.material), 1.0);
+        return lobe && lobe->alpha < kNarrowAlpha;
     });
 }
 
@@ -107,7 +106,7 @@ class PathTracer::Walk : public PairWalk {
         // Systematic sampling: each vertex gets a walk with the probability of its split.
         double turn = rng_.uniform();
         for_first_vertices(sensor_pairs, pixel, count, [&](const PathVertex& vertex) {
-            const IndirectSplit split = IndirectSplit::at(vertex.bsdf);
+            const IndirectSplit split = IndirectSplit::at(vertex);
             connections.connect(vertex, split);
             turn += split.walks;
             if (turn < 1.0) return;

@@ -24,17 +24,18 @@ constexpr double kNarrowAlpha = 0.3;
 
 }  // namespace
 
-IndirectSplit IndirectSplit::at(const Bsdf& bsdf) {
-    const auto* ggx = std::get_if<Ggx>(&bsdf);
-    const bool is_narrow = ggx != nullptr && ggx->alpha < kNarrowAlpha;
-    return is_narrow ? IndirectSplit{1.0, 0}
-                     : IndirectSplit{kWalksPerVertex, kConnectionsPerVertex};
+IndirectSplit IndirectSplit::at(const PathVertex& vertex) {
+    const auto lobe = lobe_of(vertex.bsdf, std::abs(vertex.normal.dot(vertex.to_previous)));
+    const double narrow = lobe && lobe->alpha < kNarrowAlpha ? lobe->fraction : 0.0;
+    return {std::lerp(kWalksPerVertex, 1.0, narrow),
+            static_cast<int>(std::lround((1.0 - narrow) * kConnectionsPerVertex))};
 }
 
 void SubpathDensity::add_step(const PathVertex& from, const PathVertex& to, double pdf_area) {
     // Now it is known where a light subpath would come from to the vertex before.
     if (num_steps_ >= 2) {
-        ratio_ *= survival_of(to_.bsdf) * walk_->pdf_area(to_, -to.to_previous, from_.point);
+        ratio_ *=
+            survival_at(to_, to.to_previous) * walk_->pdf_area(to_, -to.to_previous, from_.point);
     }
     ratio_ /= pdf_area;
     from_ = from;
@@ -46,7 +47,7 @@ double SubpathDensity::ratio() const {
     const double first = ratio_ * pdf_area_from_light(*scene_, *light_, to_.point);
     if (num_steps_ == 1 || !(first > 0.0)) return first;
     const Vec3 to_light = (light_->position - to_.point.position).normalized();
-    return first * survival_of(to_.bsdf) * walk_->pdf_area(to_, to_light, from_.point);
+    return first * survival_at(to_, to_light) * walk_->pdf_area(to_, to_light, from_.point);
 }
 
 SubpathConnections::SubpathConnections(const Scene& scene,
@@ -92,8 +93,7 @@ void SubpathConnections::connect_range(const PathVertex& vertex,
                                        std::size_t count) {
     Connected connected;
     evaluate_range(vertex, split, begin, count, connected);
-    const bool is_constant =
-        std::holds_alternative<Lambertian>(vertex.bsdf) && !subpaths_.any_varies();
+    const bool is_constant = traits_of(vertex.bsdf).is_constant && !subpaths_.any_varies();
     if (!is_constant) reevaluate_varying(vertex, split, begin, count, connected);
     if (orders_.max - vertex.order < subpaths_.max_vertices()) {
         for (std::size_t i = 0; i < count; ++i) {
@@ -116,14 +116,13 @@ void SubpathConnections::connect_range(const PathVertex& vertex,
     num_candidates_ = n;
 }
 
-// Between Lambertian surfaces. Plain numbers in a loop without branches, so that the compiler fills
-// vector units.
+// Between surfaces of constant value. Plain numbers in a loop without branches, so that the
+// compiler fills vector units.
 void SubpathConnections::evaluate_range(const PathVertex& vertex,
                                         const IndirectSplit& split,
                                         std::size_t begin,
                                         std::size_t count,
                                         Connected& connected) const {
-    const auto* lambertian = std::get_if<Lambertian>(&vertex.bsdf);
     const auto at = [&](LightSubpaths::Column column) { return subpaths_.column(column) + begin; };
     const double* const x = at(LightSubpaths::kX);
     const double* const y = at(LightSubpaths::kY);
@@ -139,8 +138,7 @@ void SubpathConnections::evaluate_range(const PathVertex& vertex,
     const Vec3 position = vertex.point.position;
     const double px = position.x(), py = position.y(), pz = position.z();
     const double nx = normal.x(), ny = normal.y(), nz = normal.z();
-    const double scale =
-        vertex.throughput * (lambertian != nullptr ? lambertian->albedo / kPi : 0.0);
+    const double scale = vertex.throughput * constant_value(vertex.bsdf).value_or(0.0);
     const double connections = split.connections;
     const double area_share = walk_.area_share(vertex);
     const double by_area = split.walks * area_share * walk_.area_sampler().pdf_area();
@@ -170,9 +168,9 @@ void SubpathConnections::reevaluate_varying(const PathVertex& vertex,
                                             std::size_t begin,
                                             std::size_t count,
                                             Connected& connected) const {
-    const bool is_lambertian = std::holds_alternative<Lambertian>(vertex.bsdf);
+    const bool is_constant = traits_of(vertex.bsdf).is_constant;
     for (std::size_t i = 0; i < count; ++i) {
-        if (is_lambertian && !subpaths_.varies(begin + i)) continue;
+        if (is_constant && !subpaths_.varies(begin + i)) continue;
         connected.value[i] = varying_contribution(vertex, split, begin + i);
     }
 }

@@ -17,8 +17,8 @@ struct IndirectSplit {
     /// ratio   density with which a light subpath draws the vertices of the walk, over its own
     double walk_weight(double ratio) const { return walks / (walks + connections * ratio); }
 
-    /// The split for a surface: narrow lobes find their light by walks.
-    static IndirectSplit at(const Bsdf& bsdf);
+    /// The split for a vertex: narrow lobes find their light by walks.
+    static IndirectSplit at(const PathVertex& vertex);
 };
 
 /// Follows how much more often light subpaths draw the path of a walk than the walk itself does.

@@ -23,10 +23,10 @@ double SurfaceWalk::area_share(const PathVertex& vertex) const {
 }
 
 double SurfaceWalk::evaluate(const PathVertex& vertex, const Vec3& outgoing) const {
-    if (const auto* lambertian = std::get_if<Lambertian>(&vertex.bsdf)) {
+    if (const auto value = constant_value(vertex.bsdf)) {
         const bool same_side =
             vertex.normal.dot(vertex.to_previous) * vertex.normal.dot(outgoing) > 0.0;
-        return same_side ? lambertian->albedo / kPi : 0.0;
+        return same_side ? *value : 0.0;
     }
     const core::Mat3 facet_from_world =
         scene_->facet(vertex.point.facet).world_from_facet().transpose();
@@ -35,9 +35,9 @@ double SurfaceWalk::evaluate(const PathVertex& vertex, const Vec3& outgoing) con
 }
 
 double SurfaceWalk::connection_value(const PathVertex& vertex, const PathEndpoints& ends) const {
-    if (const auto* retro = std::get_if<Retroreflective>(&vertex.bsdf)) {
+    if (const auto returned = returned_to_source(vertex.bsdf)) {
         if (!ends.coincide || vertex.order != 3) return 0.0;
-        return vertex.throughput * retro->albedo / laser_spot_m2_ * ends.light.strength;
+        return vertex.throughput * *returned / laser_spot_m2_ * ends.light.strength;
     }
     const Vec3 offset = ends.light.position - vertex.point.position;
     const double distance2 = offset.squaredNorm();
@@ -57,7 +57,7 @@ PathExtent SurfaceWalk::extent_to_light(const PathVertex& vertex, const PathEndp
 
 bool SurfaceWalk::survives(PathVertex& vertex, core::Rng& rng) const {
     if (vertex.order < kFirstRouletteOrder) return true;
-    const double survival = survival_of(vertex.bsdf);
+    const double survival = survival_at(vertex, vertex.to_previous);
     if (rng.uniform() >= survival) return false;
     vertex.throughput /= survival;
     return true;
@@ -66,7 +66,7 @@ bool SurfaceWalk::survives(PathVertex& vertex, core::Rng& rng) const {
 double SurfaceWalk::pdf_direction(const PathVertex& vertex,
                                   const Vec3& direction,
                                   double cosine) const {
-    if (std::holds_alternative<Lambertian>(vertex.bsdf)) return cosine / kPi;
+    if (traits_of(vertex.bsdf).is_constant) return cosine / kPi;
     const core::Mat3 facet_from_world =
         scene_->facet(vertex.point.facet).world_from_facet().transpose();
     return pdf_bsdf(

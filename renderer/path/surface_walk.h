@@ -6,6 +6,7 @@
 #include "renderer/scene/area_sampler.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace renderer {
@@ -17,11 +18,12 @@ inline constexpr double kAreaShareFromWall = 0.75;
 /// near.
 inline constexpr double kAreaShareBetweenSurfaces = 0.25;
 
-/// Share of walks that Russian roulette lets continue from a surface; of those from the light, at
-/// every order.
-inline double survival_of(const Bsdf& bsdf) {
+/// Fraction of walks that Russian roulette lets continue from a vertex that they come to from the
+/// direction `to_previous`; of those from the light, at every order.
+inline double survival_at(const PathVertex& vertex, const core::Vec3& to_previous) {
     constexpr double kLeast = 0.1;
-    return std::clamp(albedo_of(bsdf), kLeast, 1.0);
+    const double cosine = std::abs(vertex.normal.dot(to_previous));
+    return std::clamp(reflects_at_most(vertex.bsdf, cosine), kLeast, 1.0);
 }
 
 /// How paths continue from surface vertices and connect to the light; shared by the estimators.

@@ -33,11 +33,11 @@ PathValue PathIntegrand::evaluate(const PathDomain& domain, const ReusablePath& 
         value.extent.velocity_m_per_s += direction.dot(next_velocity - velocity);
         velocity = next_velocity;
         if (i > 0) {
-            if (const auto* retro = std::get_if<Retroreflective>(&before.bsdf)) {
+            if (const auto returned = returned_to_source(before.bsdf)) {
                 // Only back to a light at the sensor; the area of the laser spot replaces the
                 // missing density.
                 if (!domain.ends.coincide || path.num_vertices != 1) return value;
-                value.radiance = carried * retro->albedo / laser_spot_m2_ * light.strength;
+                value.radiance = carried * *returned / laser_spot_m2_ * light.strength;
                 return value;
             }
             carried *= walk_->evaluate(before, direction) * std::abs(before.normal.dot(direction));

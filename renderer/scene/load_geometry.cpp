@@ -21,8 +21,7 @@ void apply(const ObjectSettings& settings, Object& object) {
         object.material = {object.name, surface, albedo, roughness, nullptr};
     }
     if (settings.retroreflective) {
-        object.material.model =
-            *settings.retroreflective ? SurfaceModel::Retroreflective : SurfaceModel::Lambertian;
+        object.material.model = model_of({.retroreflective = *settings.retroreflective});
     }
     object.material.albedo = settings.albedo.value_or(object.material.albedo);
     object.role = settings.role.value_or(object.role);

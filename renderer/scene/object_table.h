@@ -14,7 +14,7 @@ namespace renderer {
 
 /// A material without a texture, in place of the file's.
 struct MaterialSettings {
-    SurfaceModel surface = SurfaceModel::Lambertian;
+    SurfaceModel surface{};
     double albedo = 1.0;
     double roughness = 1.0;
 };
@@ -42,7 +42,7 @@ template <class Visitor>
 void for_each_field(MaterialSettings& material, Visitor&& visit) {
     visit("surface", material.surface, "how it reflects");
     visit("albedo", material.albedo, core::between(0, 1, "share of light that is reflected"));
-    visit("roughness", material.roughness, core::between(0, 1, "of GGX surfaces"));
+    visit("roughness", material.roughness, core::between(0, 1, "of models with a lobe"));
 }
 
 template <class Visitor>

@@ -75,22 +75,6 @@ std::vector<std::array<Vec3, 3>> corners_of(std::span<const Facet> facets) {
     return corners;
 }
 
-Bsdf make_bsdf(const Material& material) {
-    switch (material.model) {
-        case SurfaceModel::Ggx:
-            return Ggx{material.albedo,
-                       std::max(kSmallestGgxAlpha, material.roughness * material.roughness)};
-        case SurfaceModel::Retroreflective:
-            return Retroreflective{material.albedo};
-        case SurfaceModel::Dielectric:
-            return Dielectric{material.albedo,
-                              std::max(kSmallestGgxAlpha, material.roughness * material.roughness)};
-        case SurfaceModel::Lambertian:
-            break;
-    }
-    return Lambertian{material.albedo};
-}
-
 Vec2 texture_coordinates(const Object& object, const Facet& facet, const Vec3& position) {
     // Barycentric weights by least squares in the facet's plane.
     const Vec3 offset = position - facet.corner;
@@ -171,8 +155,8 @@ Scene make_scene(SceneGeometry geometry,
                  const core::Scan& scan) {
     for (Object& object : geometry.objects) {
         if (!description.render.dielectric_specular) break;
-        Material& material = object.material;
-        if (material.model == SurfaceModel::Lambertian) material.model = SurfaceModel::Dielectric;
+        SurfaceModel& model = object.material.model;
+        if (traits_of(model).gltf == GltfSurface{}) model = model_of({.specular = true});
     }
     const auto* wall = scan.as<core::WallScan>();
     const auto in_front = [&](const Object& object) {

@@ -233,7 +233,7 @@ void set_relay_wall(const ForeignShape& shape, const std::string& where, Importe
             "columns of wall points run against those of the foreign scene, whose wall is "
             "mirrored");
     }
-    if (shape.material.model != SurfaceModel::Lambertian) {
+    if (!traits_of(shape.material.model).is_constant) {
         scene.not_translated.emplace_back(
             "the relay wall is diffuse here, with its reflectance as albedo");
     }

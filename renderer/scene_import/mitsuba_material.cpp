@@ -109,7 +109,7 @@ class MaterialImport {
     }
 
     void read_conductor(KeyReader& keys, const std::string& type, Material& material) {
-        material.model = SurfaceModel::Ggx;
+        material.model = model_of({.metallic = true});
         material.albedo = metal(keys) * reflectance(keys, "specular_reflectance", 1.0);
         const double alpha = type == "conductor" ? 0.0 : keys.get("alpha", 0.1);
         core::check_range(alpha, {0.0, true, 1.0, true}, keys.where("alpha"));

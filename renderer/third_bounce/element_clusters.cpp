@@ -44,7 +44,7 @@ class Clusterer {
                 begin, items_.end(), [&](const Item& item) { return object_of(item) != object; });
             const Material& material = scene_.object_of(elements_[begin->element].facet).material;
             const bool is_uniform =
-                !material.albedo_texture && kind_of(material) != ElementKind::Glossy;
+                !material.albedo_texture && !element_response(make_bsdf(material))->glossy;
             if (is_uniform) {
                 split({begin, end});
             } else {

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <span>
 #include <utility>
-#include <variant>
 
 namespace renderer {
 namespace {
@@ -20,10 +19,8 @@ constexpr double kGroupSizePerDistance = 0.8;
 // ... and its normals differ by about 30 degrees at most.
 constexpr double kMinGroupCosine = 0.85;
 
-double reflectance(const Bsdf& bsdf, ElementKind kind, double laser_spot_m2) {
-    const double albedo = albedo_of(bsdf);
-    return kind == ElementKind::Retroreflective ? albedo / laser_spot_m2 : albedo / core::kPi;
-}
+// Schlick's term alone reflects this much of light from all sides, where the albedo is 0.
+constexpr double kSchlickMean = 1.0 / 21.0;
 
 struct ElementCenter {
     Vec3 position;
@@ -68,6 +65,10 @@ class ElementPacker {
         Vec3 sum = Vec3::Zero();
         for (const Vec3& point : scan.sensing.positions) sum += point - set_.origin;
         scan_center_ = sum / static_cast<double>(scan.sensing.size());
+        for (const Object& object : scene.objects()) {
+            responses_.push_back(
+                element_response(make_bsdf(object.material)).value_or(ElementResponse{}));
+        }
     }
 
     ElementSet pack(std::vector<SurfaceElement> elements, std::vector<std::uint32_t> clusters);
@@ -77,11 +78,12 @@ class ElementPacker {
         std::size_t begin;
         std::size_t end;
     };
-    ElementKind kind_of_element(const ElementCluster& element) const {
-        return kind_of(scene_.object_of(element.triangle.facet).material);
+    const ElementResponse& response_of(const ElementCluster& element) const {
+        return responses_[scene_.facet(element.triangle.facet).object];
     }
     std::size_t num_blocks(const std::vector<ElementCluster>& elements) const;
-    void append_blocks(const std::vector<ElementCluster>& elements, ElementKind kind);
+    void append_blocks(const std::vector<ElementCluster>& elements,
+                       const ElementResponse& response);
     void fill_lane(ElementBlock& block, std::size_t lane, const ElementCluster& element) const;
     bool may_be_one_group(const ElementBlock& block, Range lanes) const;
     bool hangs_together(std::size_t block, Range lanes) const;
@@ -91,6 +93,7 @@ class ElementPacker {
     const Scene& scene_;
     const PackingRules& rules_;
     Vec3 scan_center_;
+    std::vector<ElementResponse> responses_;  ///< per object
     std::vector<std::uint32_t> element_ids_;  ///< block * kSize + lane of every merged element
     ElementSet set_;
 };
@@ -120,35 +123,39 @@ void ElementPacker::fill_lane(ElementBlock& block,
                                          : center;
         const double share = node < 3 ? kShareOfCorner : node < 6 ? kShareOfMiddle : kShareOfCenter;
         const Bsdf bsdf = scene_.bsdf_at({position + set_.origin, element.facet});
-        block.reflectance[node][lane] = reflectance(bsdf, block.kind, rules_.laser_spot_m2);
-        block.mean_reflectance[lane] += share * block.reflectance[node][lane];
-        if (const auto* ggx = std::get_if<Ggx>(&bsdf)) block.glossy_alpha[lane] = ggx->alpha;
+        const double per = block.response.towards_source ? rules_.laser_spot_m2 : core::kPi;
+        double albedo = albedo_of(bsdf);
+        block.reflectance[node][lane] = albedo / per;
+        if (block.response.glossy) {
+            albedo = std::max(albedo, kSchlickMean);
+            block.glossy_alpha[lane] = lobe_of(bsdf, 1.0)->alpha;
+        }
+        block.mean_reflectance[lane] += share * (albedo / per);
     }
 }
 
 std::size_t ElementPacker::num_blocks(const std::vector<ElementCluster>& elements) const {
-    std::array<std::size_t, 3> of_kind{};
-    for (const ElementCluster& element : elements) {
-        ++of_kind[static_cast<std::size_t>(kind_of_element(element))];
-    }
     std::size_t sum = 0;
-    for (const std::size_t count : of_kind) {
-        sum += (count + ElementBlock::kSize - 1) / ElementBlock::kSize;
+    for (const ElementResponse& response : kElementResponses) {
+        const auto count = std::ranges::count_if(
+            elements, [&](const auto& element) { return response_of(element) == response; });
+        sum += (static_cast<std::size_t>(count) + ElementBlock::kSize - 1) / ElementBlock::kSize;
     }
     return sum;
 }
 
-void ElementPacker::append_blocks(const std::vector<ElementCluster>& elements, ElementKind kind) {
+void ElementPacker::append_blocks(const std::vector<ElementCluster>& elements,
+                                  const ElementResponse& response) {
     std::vector<ElementCenter> sorted;
     for (std::size_t i = 0; i < elements.size(); ++i) {
-        if (kind_of_element(elements[i]) == kind) {
+        if (response_of(elements[i]) == response) {
             sorted.push_back({elements[i].triangle.center(), i});
         }
     }
     sort_into_blocks(sorted);
     for (std::size_t begin = 0; begin < sorted.size(); begin += ElementBlock::kSize) {
         ElementBlock& block = set_.blocks.emplace_back();
-        block.kind = kind;
+        block.response = response;
         block.count = std::min(ElementBlock::kSize, sorted.size() - begin);
         Eigen::AlignedBox3d box;
         for (std::size_t lane = 0; lane < ElementBlock::kSize; ++lane) {
@@ -248,9 +255,8 @@ ElementSet ElementPacker::pack(std::vector<SurfaceElement> elements,
     set_.num_elements = merged.elements.size();
     element_ids_.resize(set_.num_elements);
     set_.blocks.reserve(num_blocks(merged.elements));
-    for (const ElementKind kind :
-         {ElementKind::Lambertian, ElementKind::Glossy, ElementKind::Retroreflective}) {
-        append_blocks(merged.elements, kind);
+    for (const ElementResponse& response : kElementResponses) {
+        append_blocks(merged.elements, response);
     }
     merged.elements = {};
     for (auto& [a, b] : pairs) {

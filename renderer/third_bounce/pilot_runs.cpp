@@ -126,7 +126,7 @@ core::WallScan pilot_scan(const Scene& scene, const core::WallScan& scan, std::s
     }
     if (scan.pattern == core::ScanPattern::Confocal) pilot.illumination = pilot.sensing;
     const bool has_retroreflectors = std::ranges::any_of(scene.objects(), [](const Object& object) {
-        return kind_of(object.material) == ElementKind::Retroreflective;
+        return traits_of(object.material.model).returns_to_source;
     });
     if (has_retroreflectors) add_confocal_pair(scan, pilot);
     return pilot;

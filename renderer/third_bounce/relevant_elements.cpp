@@ -32,7 +32,7 @@ RelevantElements::BlockPoints RelevantElements::of_block(std::uint32_t b) const 
     const ElementBlock& block = set_.blocks[b];
     PointMask crossing = 0;
     PointMask reaching = points_reaching(b, crossing);
-    if (block.kind == ElementKind::Retroreflective) {
+    if (block.response.towards_source) {
         reaching = common(reaching, points_.confocal);
         crossing = common(crossing, points_.confocal);
     }
@@ -162,8 +162,8 @@ PointMask RelevantElements::points_facing(const ElementBlock& block, std::size_t
     if (!(block.area_m2[i] * block.mean_reflectance[i] > 0.0)) return 0;
     const Vec3 center = block.center[i];
     const Vec3 normal = block.normal[i];
-    const bool has_one_end = rules_->other_legs.empty() && rules_->other_end &&
-                             block.kind != ElementKind::Retroreflective;
+    const bool has_one_end =
+        rules_->other_legs.empty() && rules_->other_end && !block.response.towards_source;
     if (has_one_end) {
         const Vec3& other_normal = rules_->other_end->normal;
         const Vec3 away = rules_->other_end->position - center;
@@ -188,7 +188,7 @@ RelevantElements::Masses RelevantElements::masses_of(std::uint32_t element) cons
     const Vec3 center = block.center[i];
     const Vec3 normal = block.normal[i];
     const double reflected = block.area_m2[i] * block.mean_reflectance[i];
-    const bool looks_back = block.kind == ElementKind::Retroreflective;
+    const bool looks_back = block.response.towards_source;
     double other_term = 1.0;
     if (rules_->other_end && !looks_back) {
         const Vec3& other_normal = rules_->other_end->normal;

@@ -13,14 +13,9 @@
 
 namespace renderer {
 
-/// How the weight of an element follows from the geometry terms of its two legs.
-enum class ElementKind { Lambertian, Retroreflective, Glossy };
-
-inline ElementKind kind_of(const Material& material) {
-    if (material.model == SurfaceModel::Ggx) return ElementKind::Glossy;
-    return material.model == SurfaceModel::Retroreflective ? ElementKind::Retroreflective
-                                                           : ElementKind::Lambertian;
-}
+/// All responses of elements, in the order in which blocks of them are packed.
+inline constexpr std::array kElementResponses{
+    ElementResponse{}, ElementResponse{.glossy = true}, ElementResponse{.towards_source = true}};
 
 /// A flat triangle small enough for the closed-form kernel; positions relative to
 /// ElementSet::origin.
@@ -34,7 +29,7 @@ struct SurfaceElement {
     core::Vec3 midpoint(std::size_t i) const { return 0.5 * (corners[i] + corners[(i + 1) % 3]); }
 };
 
-/// Elements of one kind, laid out for vectorised loops. Nodes 0-2 are the corners, 3-5 the
+/// Elements of one response, laid out for vectorised loops. Nodes 0-2 are the corners, 3-5 the
 /// midpoints of the edges that start there, node 6 is the centre.
 struct alignas(64) ElementBlock {
     static constexpr std::size_t kSize = TriangleLanes::kSize;
@@ -50,11 +45,11 @@ struct alignas(64) ElementBlock {
     std::array<Lanes, 3> squared_edge;  ///< opposite to the corners [m^2]
     Lanes one_sided;                    ///< +-1: only this side of the normal is visible; 0: both
     std::array<Lanes, kNodes> reflectance;  ///< at the nodes; albedo/pi or albedo/spot area
-    Lanes mean_reflectance;
-    Lanes glossy_alpha;  ///< GGX width, set for glossy elements only
+    Lanes mean_reflectance;                 ///< of glossy elements for light from all sides
+    Lanes glossy_alpha;                     ///< GGX width, set for glossy elements only
     std::array<std::uint32_t, kSize> facet;
     std::array<std::uint32_t, kSize> random_bits;  ///< from SurfaceElement::number
-    ElementKind kind = ElementKind::Lambertian;
+    ElementResponse response;
     std::size_t count = 0;  ///< lanes beyond it repeat lane 0 with area 0
     double longest_edge_m = 0.0;
     /// Spheres that hold the corners of each SIMD group.

@@ -89,9 +89,8 @@ std::vector<SurfaceElement> clip(const SurfaceElement& element,
 
 // Squared width of the BSDF's lobe relative to a cosine's.
 double lobe_scale(const Material& material) {
-    if (material.model != SurfaceModel::Ggx) return 1.0;
-    const double alpha = material.roughness * material.roughness;
-    return std::min(1.0, 4.0 * alpha * alpha);
+    const auto lobe = lobe_of(make_bsdf(material), 1.0);
+    return lobe ? std::min(1.0, 4.0 * lobe->alpha * lobe->alpha) : 1.0;
 }
 
 }  // namespace
@@ -159,8 +158,9 @@ void SurfaceSubdivider::begin_facet(Cutting& cutting) const {
     const std::uint32_t i = cutting.next_facet++;
     const Object& object = scene_.object_of(i);
     const Material& material = object.material;
-    if (!scene_.is_hidden(i) || !is_integrable(material) || material.albedo == 0.0) return;
-    if (kind_of(material) == ElementKind::Retroreflective && !returns_light_) return;
+    const auto response = element_response(make_bsdf(material));
+    if (!scene_.is_hidden(i) || !response || !reflects(material)) return;
+    if (response->towards_source && !returns_light_) return;
     SurfaceElement whole;
     whole.facet = i;
     const auto& triangle = object.mesh.triangles[scene_.facet(i).triangle];

@@ -84,7 +84,7 @@ NodeWeights glossy_values(const ElementBlock& block,
                                                       const PairEnd& light,
                                                       const PairEnd& sensor) {
     NodeWeights weights;
-    if (block.kind == ElementKind::Glossy) {
+    if (block.response.glossy) {
         weights = glossy_values(block, begin, light, sensor);
     } else {
         for (std::size_t node = 0; node < weights.size(); ++node) {
@@ -93,7 +93,7 @@ NodeWeights glossy_values(const ElementBlock& block,
     }
     for (std::size_t node = 0; node < weights.size(); ++node) {
         weights[node] *= load(light.table->factor[node], begin);
-        if (block.kind != ElementKind::Retroreflective) {
+        if (!block.response.towards_source) {
             weights[node] *= load(sensor.table->factor[node], begin);
         }
     }

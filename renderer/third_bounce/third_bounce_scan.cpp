@@ -293,8 +293,7 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile) {
             for (std::size_t s = 0; s < num_sensors; ++s) {
                 const PairEnd& sensor = sensors.ends()[s];
                 if ((light.table->simd_groups & sensor.table->simd_groups) == 0) continue;
-                if (block.kind == ElementKind::Retroreflective &&
-                    !coincide(*light.point, *sensor.point)) {
+                if (block.response.towards_source && !coincide(*light.point, *sensor.point)) {
                     continue;
                 }
                 const core::TimeAxis axis = axis_of_pair(pair_of(l, s));

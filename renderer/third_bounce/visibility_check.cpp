@@ -68,7 +68,7 @@ void VisibilityCheck::sum_masses(const WallPoint& light, const WallPoint& sensor
     double sum = 0.0;
     for (std::size_t b = 0; b < set_.blocks.size(); ++b) {
         const ElementBlock& block = set_.blocks[b];
-        const bool looks_back = block.kind == ElementKind::Retroreflective;
+        const bool looks_back = block.response.towards_source;
         for (std::size_t begin = 0; begin < ElementBlock::kSize; begin += Simd::size()) {
             const Simd first = leg_terms(block, begin, light);
             const Simd second = is_confocal ? first : leg_terms(block, begin, sensor);
@@ -141,11 +141,11 @@ double VisibilityCheck::weight_of(const Target& target,
     const std::size_t lane = target.element % ElementBlock::kSize;
     const Vec3 normal = block.normal[lane];
     const double first = leg_term(light, target.position, normal);
-    if (block.kind == ElementKind::Retroreflective) {
+    if (block.response.towards_source) {
         return block.mean_reflectance[lane] * std::abs(first);
     }
     const double both = std::max(0.0, first * leg_term(sensor, target.position, normal));
-    if (block.kind == ElementKind::Lambertian) return block.mean_reflectance[lane] * both;
+    if (!block.response.glossy) return block.mean_reflectance[lane] * both;
     const core::Mat3 local_from_world =
         core::frame_from_normal(normal, block.corners[1][lane] - block.corners[0][lane])
             .transpose();

@@ -83,7 +83,7 @@ class VisibilityCheck {
 
     const Scene& scene_;
     const ElementSet& set_;
-    std::vector<double> mass_up_to_;  ///< sums over elements, each as if it were Lambertian
+    std::vector<double> mass_up_to_;  ///< sums over elements, each as if it were diffuse
     std::vector<Target> targets_;
     std::vector<bool> is_blocked_;  ///< per target
     std::uint64_t num_rays_ = 0;

@@ -82,8 +82,8 @@ void VisibilityTracer::refine_quarters() {
 }
 
 void VisibilityTracer::add_squared_error(const Refined& refined, PointMask points) {
-    const ElementKind kind = set_.blocks[refined.element / ElementBlock::kSize].kind;
-    const double num_pairs = kind == ElementKind::Retroreflective ? 1.0 : pairs_per_point_;
+    const ElementBlock& block = set_.blocks[refined.element / ElementBlock::kSize];
+    const double num_pairs = block.response.towards_source ? 1.0 : pairs_per_point_;
     const RelevantElements::Masses mass = relevant_.masses_of(refined.element);
     for_each_bit(points, [&](std::size_t p) {
         squared_errors_[p] += num_pairs * std::pow(kErrorFromSixteenths * mass.of_point[p], 2);

@@ -14,7 +14,7 @@ using core::Vec3;
 using truth::Quad;
 using truth::QuadVec;
 
-constexpr renderer::Ggx kMirrorLike{0.7, renderer::kSmallestGgxAlpha};
+constexpr renderer::GgxConductor kMirrorLike{0.7, renderer::kSmallestGgxAlpha};
 
 // D of the GGX distribution by the normal's cosine: with tan^2 = (1 - cos^2)/cos^2,
 // D = 1/(pi alpha^2 cos^4 (1 + tan^2/alpha^2)^2).

@@ -207,7 +207,7 @@ TEST(SensorRender, SubsamplesConverge) {
 TEST(SensorRender, RetroreflectorsReturnWhatTheLaserSpreads) {
     SensorSetup setup = oblique_sensor(core::SensorIllumination::Flood);
     renderer::Object object = test_support::parallelogram_object(kSmallFacet);
-    object.material.model = renderer::SurfaceModel::Retroreflective;
+    object.material.model = renderer::model_of({.retroreflective = true});
     renderer::Object black =
         test_support::parallelogram_object({{-0.4, 0.1, 0.9}, {0.1, 0, 0}, {0, 0.1, 0}, 0.0});
     std::vector<double> expected(4 * static_cast<std::size_t>(kSensorAxis.num_bins));

@@ -54,7 +54,7 @@ renderer::Object parallelogram_object(const Parallelogram& shape) {
     object.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     object.material.albedo = shape.albedo;
     if (shape.roughness) {
-        object.material.model = renderer::SurfaceModel::Ggx;
+        object.material.model = renderer::model_of({.metallic = true});
         object.material.roughness = *shape.roughness;
     }
     return object;
@@ -132,7 +132,8 @@ std::vector<float> third_bounce_by_quadrature(const Parallelogram& hidden,
     const double cell_area = area_vector.norm() / (double(steps) * steps);
     const double front = std::pow(wall_albedo / core::kPi, 2) * cell_area;
     renderer::Bsdf bsdf = renderer::Lambertian{hidden.albedo};
-    if (hidden.roughness) bsdf = renderer::Ggx{hidden.albedo, std::pow(*hidden.roughness, 2)};
+    if (hidden.roughness)
+        bsdf = renderer::GgxConductor{hidden.albedo, std::pow(*hidden.roughness, 2)};
     const core::Mat3 facet_from_world = core::frame_from_normal(normal, hidden.u).transpose();
     for (int i = 0; i < steps; ++i) {
         for (int j = 0; j < steps; ++j) {

@@ -5,7 +5,9 @@
 #include "calib/model/state_vector.h"
 #include "renderer/render.h"
 #include "renderer/triangle/exact_arcs.h"
+#include "tests/support/error_message.h"
 #include "tests/support/fit_examples.h"
+#include "tests/support/surface_models.h"
 
 #include <gtest/gtest.h>
 
@@ -213,10 +215,23 @@ TEST(ForwardModel, AgreesWithTheRendererBehindAnOccluder) {
     EXPECT_LT(difference_from_renderer(two_objects(), 1e-4), 0.03);
 }
 
-TEST(ForwardModel, AgreesWithTheRendererOnARetroreflector) {
-    renderer::SceneGeometry geometry = two_objects();
-    geometry.objects.front().material.model = renderer::SurfaceModel::Retroreflective;
-    EXPECT_LT(difference_from_renderer(geometry, 3e-4), 0.03);
+TEST(ForwardModel, AgreesWithTheRendererOrRefusesForEverySurfaceModel) {
+    for (const double albedo : {0.5, 0.0}) {
+        for (const renderer::Material& material :
+             test_support::materials_of_all_models(albedo, 0.5)) {
+            SCOPED_TRACE(material.name);
+            renderer::SceneGeometry geometry = two_objects();
+            geometry.objects.front().material = material;
+            if (renderer::traits_of(material.model).can_be_fitted()) {
+                EXPECT_LT(difference_from_renderer(geometry, 3e-4), 0.03);
+                continue;
+            }
+            const std::string message = test_support::error_message(
+                [&] { static_cast<void>(difference_from_renderer(geometry, 3e-4)); });
+            EXPECT_NE(message.find("object front: is a " + material.name), std::string::npos)
+                << message;
+        }
+    }
 }
 
 }  // namespace

@@ -194,7 +194,7 @@ TEST(ConnectionTechnique, LobesOfGlossyVerticesMeetWhatTheyMirror) {
     vertex.point = {Vec3(0.2, 0.1, 0.0), 0};
     vertex.normal = Vec3::UnitZ();
     vertex.to_previous = Vec3(-1, 0, 1).normalized();
-    vertex.bsdf = renderer::Ggx{0.9, 0.05};
+    vertex.bsdf = renderer::GgxConductor{0.9, 0.05};
     const Vec3 light(-0.5, 0.2, 0.7);
     std::uint64_t num_rays = 0;
     const auto lobe = technique.lobe_of(vertex, light, num_rays);
@@ -210,8 +210,8 @@ TEST(ConnectionTechnique, LobesOfGlossyVerticesMeetWhatTheyMirror) {
     vertex.to_previous = Vec3(1, 0, 1).normalized();
     EXPECT_FALSE(technique.lobe_of(vertex, light, num_rays));  // into the open
     EXPECT_EQ(num_rays, 3U);
-    for (const renderer::Bsdf& wide :
-         {renderer::Bsdf(renderer::Ggx{0.9, 0.5}), renderer::Bsdf(renderer::Lambertian{})}) {
+    for (const renderer::Bsdf& wide : {renderer::Bsdf(renderer::GgxConductor{0.9, 0.5}),
+                                       renderer::Bsdf(renderer::Lambertian{})}) {
         vertex.bsdf = wide;
         EXPECT_FALSE(technique.lobe_of(vertex, light, num_rays));
     }

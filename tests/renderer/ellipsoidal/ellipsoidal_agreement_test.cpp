@@ -252,7 +252,7 @@ TEST(EllipsoidalTracer, ImagesAgreeWithPaths) {
 TEST(EllipsoidalTracer, ImagesOfGlossySurfacesAgreeWithPaths) {
     std::vector<renderer::Object> objects = walls_and_ball();
     for (const auto& [index, roughness] : {std::pair{std::size_t{0}, 0.5}, {std::size_t{3}, 0.3}}) {
-        objects[index].material.model = renderer::SurfaceModel::Ggx;
+        objects[index].material.model = renderer::model_of({.metallic = true});
         objects[index].material.roughness = roughness;
     }
     RenderSettings settings;

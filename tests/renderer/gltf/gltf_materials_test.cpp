@@ -15,9 +15,8 @@ using namespace gltf_test;
 using renderer::SceneGeometry;
 
 TEST(Gltf, MaterialsDecideAlbedoAndModel) {
-    using renderer::SurfaceModel;
     GltfFile file = square_file();
-    EXPECT_EQ(file.load().objects[0].material.model, SurfaceModel::Lambertian);
+    EXPECT_EQ(file.load().objects[0].material.model, renderer::model_of({}));
     EXPECT_EQ(file.load().objects[0].material.albedo, 1.0);
 
     file.primitive()["material"] = 0;
@@ -27,13 +26,13 @@ TEST(Gltf, MaterialsDecideAlbedoAndModel) {
                            {{"baseColorFactor", {0.2, 0.4, 0.9, 1.0}}, {"metallicFactor", 0.0}}}}});
     const auto paint = file.load().objects[0].material;
     EXPECT_EQ(paint.name, "paint");
-    EXPECT_EQ(paint.model, SurfaceModel::Lambertian);
+    EXPECT_EQ(paint.model, renderer::model_of({}));
     EXPECT_NEAR(paint.albedo, 0.5, 1e-15);
 
     auto& pbr = file.json["materials"][0]["pbrMetallicRoughness"];
     pbr["metallicFactor"] = 0.5;
     pbr["roughnessFactor"] = 0.3;
-    EXPECT_EQ(file.load().objects[0].material.model, SurfaceModel::Ggx);
+    EXPECT_EQ(file.load().objects[0].material.model, renderer::model_of({.metallic = true}));
     EXPECT_EQ(file.load().objects[0].material.roughness, 0.3);
 
     EXPECT_EQ(
@@ -43,7 +42,7 @@ TEST(Gltf, MaterialsDecideAlbedoAndModel) {
     file.json["materials"][0] = Json::object();
     ASSERT_EQ(file.load().warnings.size(), 1U);
     EXPECT_NE(file.load().warnings[0].find("a rough metal by glTF's defaults"), std::string::npos);
-    EXPECT_EQ(file.load().objects[0].material.model, SurfaceModel::Ggx)
+    EXPECT_EQ(file.load().objects[0].material.model, renderer::model_of({.metallic = true}))
         << "metallicFactor is 1 by default";
     EXPECT_EQ(file.load().objects[0].material.roughness, 1.0);
 }

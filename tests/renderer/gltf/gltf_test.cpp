@@ -247,7 +247,7 @@ TEST(Gltf, ExtrasOfNodesWinOverThoseOfMaterials) {
                                                  {"blender", 1}}}}});
     auto object = file.load().objects[0];
     EXPECT_EQ(object.role, renderer::Role::BackWall);
-    EXPECT_EQ(object.material.model, renderer::SurfaceModel::Retroreflective);
+    EXPECT_EQ(object.material.model, renderer::model_of({.retroreflective = true}));
     EXPECT_TRUE(object.ellipsoidal_exclude);
     EXPECT_EQ(object.velocity_m_per_s, Vec3(0, 0, 0));
 
@@ -256,9 +256,17 @@ TEST(Gltf, ExtrasOfNodesWinOverThoseOfMaterials) {
                                        {"nlos_velocity_m_per_s", {1, 2.5, -3}}};
     object = file.load().objects[0];
     EXPECT_EQ(object.role, renderer::Role::RelayWall);
-    EXPECT_EQ(object.material.model, renderer::SurfaceModel::Ggx);
+    EXPECT_EQ(object.material.model, renderer::model_of({.metallic = true}));
     EXPECT_TRUE(object.ellipsoidal_exclude);
     EXPECT_EQ(object.velocity_m_per_s, Vec3(1, 2.5, -3));
+
+    file.json["materials"][0]["extras"]["nlos_surface_model"] = "ggx dielectric";
+    object = file.load().objects[0];
+    EXPECT_EQ(object.material.model, renderer::model_of({.specular = true}));
+    file.json["nodes"][0]["extras"]["nlos_surface_model"] = "velvet";
+    const std::string error = error_of(file);
+    EXPECT_NE(error.find("nlos_surface_model"), std::string::npos) << error;
+    EXPECT_NE(error.find("ggx dielectric"), std::string::npos) << error;
 }
 
 TEST(Gltf, ExtrasReachDescendantsUntilOverridden) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tests/renderer/gltf/gltf_files.h"
+#include "tests/support/surface_models.h"
 
 #include <gtest/gtest.h>
 
@@ -30,7 +31,7 @@ SceneGeometry full_geometry() {
     moved.role = renderer::Role::BackWall;
     moved.ellipsoidal_exclude = true;
     moved.velocity_m_per_s = {0.1, -2, 1.0 / 3.0};
-    moved.material.model = renderer::SurfaceModel::Ggx;
+    moved.material.model = renderer::model_of({.metallic = true});
     moved.material.roughness = 0.35;
     moved.world_from_node.translation() = Vec3(1000.1, -3, 2000.2);
     moved.world_from_node.linear() =
@@ -39,7 +40,7 @@ SceneGeometry full_geometry() {
 
     Object mirror = plain;
     mirror.name = "mirror";
-    mirror.material.model = renderer::SurfaceModel::Retroreflective;
+    mirror.material.model = renderer::model_of({.retroreflective = true});
     mirror.role = renderer::Role::RelayWall;
     mirror.uv = {{0, 0}, {1, 0}, {0.25, -3}};
     auto texture = std::make_shared<Texture>();
@@ -54,6 +55,11 @@ SceneGeometry full_geometry() {
 
     SceneGeometry geometry;
     geometry.objects = {plain, moved, mirror};
+    for (const renderer::Material& material : test_support::materials_of_all_models(0.6, 0.45)) {
+        geometry.objects.push_back(plain);
+        geometry.objects.back().name = material.name;
+        geometry.objects.back().material = material;
+    }
     renderer::Camera camera;
     camera.name = "eye";
     camera.position = {1, 2, 3};

@@ -135,12 +135,12 @@ TEST(MeshFile, TrianglesWithoutAreaAreDropped) {
 TEST(MeshFile, DiffuseColoursAreLinearAndCountAsTheirMean) {
     const auto painted = load_with_material("Kd 0.75 0.5 0.25\n").objects.at(0).material;
     EXPECT_EQ(painted.name, "paint");
-    EXPECT_EQ(painted.model, renderer::SurfaceModel::Lambertian);
+    EXPECT_EQ(painted.model, renderer::model_of({}));
     EXPECT_EQ(painted.albedo, 0.5);
     EXPECT_EQ(load_with_material("Kd 0 0 0\n").objects.at(0).material.albedo, 0.0);
 
     const auto metal = load_with_material("Kd 0.5 0.5 0.5\nPm 1\nPr 0.25\n").objects.at(0).material;
-    EXPECT_EQ(metal.model, renderer::SurfaceModel::Ggx);
+    EXPECT_EQ(metal.model, renderer::model_of({.metallic = true}));
     EXPECT_EQ(metal.roughness, 0.25);
 
     EXPECT_EQ(load_with_material("\tKd\t.5 # grey\n").objects.at(0).material.albedo, 0.5);

@@ -163,7 +163,7 @@ TEST(Camera, SpotBesideEverySurfaceIsRefused) {
 TEST(Camera, MirrorShowsTheFloorAtItsMirroredLength) {
     renderer::Object mirror =
         test_support::parallelogram_object({Vec3(1, -2, 0), Vec3(0, 4, 0), Vec3(0, 0, 2), 1.0});
-    mirror.material.model = renderer::SurfaceModel::Ggx;
+    mirror.material.model = renderer::model_of({.metallic = true});
     mirror.material.roughness = 0.03;
     const Vec3 eye(0.2, 0.0, 0.9);
     const Vec3 seen(0.4, 0.2, 0.0);

@@ -17,7 +17,6 @@ namespace {
 
 using core::Vec3;
 using renderer::LightSubpaths;
-using renderer::SurfaceModel;
 using test_support::image_of;
 using test_support::parallelogram_object;
 
@@ -194,7 +193,7 @@ TEST(LightSubpaths, AnyRunOfWalksLeavesTheLightEvenly) {
 // Surfaces of every kind, things in the way, and a camera that sees them.
 std::vector<renderer::Object> furnished_room() {
     std::vector<renderer::Object> objects = closed_room();
-    objects[1].material.model = SurfaceModel::Dielectric;
+    objects[1].material.model = renderer::model_of({.specular = true});
     objects[1].material.roughness = 0.5;
     objects.push_back(test_support::sphere_object(Vec3(-0.2, -0.2, -0.2), 0.15, 2, 0.8));
     objects.back().velocity_m_per_s = Vec3(0.5, 0.0, 0.3);

@@ -191,7 +191,7 @@ TEST(PathTracer, RetroreflectorReturnsTheSpotOfConfocalPairsOnly) {
         renderer::SceneGeometry geometry;
         geometry.objects.push_back(test_support::parallelogram_object(
             {Vec3(-1e-4, -1e-4, 0.5), Vec3(2e-4, 0, 0), Vec3(0, 2e-4, 0), 0.9}));
-        geometry.objects.back().material.model = renderer::SurfaceModel::Retroreflective;
+        geometry.objects.back().material.model = renderer::model_of({.retroreflective = true});
         const renderer::Scene scene(std::move(geometry), scan, renderer::RelayWall{});
         renderer::RenderSettings settings = path_settings("Retro", 1000);
         settings.laser_spot_m2 = kSpot;

@@ -40,7 +40,7 @@ std::vector<renderer::Object> make_objects() {
 renderer::SceneGeometry geometry(bool glossy) {
     renderer::SceneGeometry result{make_objects(), {}};
     if (glossy) {
-        result.objects[0].material.model = renderer::SurfaceModel::Ggx;
+        result.objects[0].material.model = renderer::model_of({.metallic = true});
         result.objects[0].material.roughness = 0.5;
     }
     return result;

@@ -186,7 +186,7 @@ TEST_F(LoadGeometry, PlacedMeshesStandBesideTheGeometry) {
     EXPECT_EQ(geometry.objects[0].material.albedo, 0.25);
     EXPECT_EQ(geometry.objects[1].name, "a");
     EXPECT_EQ(geometry.objects[2].name, "a_2");
-    EXPECT_EQ(geometry.objects[2].material.model, renderer::SurfaceModel::Ggx);
+    EXPECT_EQ(geometry.objects[2].material.model, renderer::model_of({.metallic = true}));
     EXPECT_EQ(geometry.objects[2].material.roughness, 0.3);
     const core::Vec3 apart =
         geometry.objects[1].mesh.vertices[0] - geometry.objects[2].mesh.vertices[0];

@@ -190,7 +190,7 @@ TEST(MitsubaScene, RoughConductorsKeepTheirWidthAndReflectance) {
              <float name="alpha" value="0.25"/><string name="distribution" value="ggx"/>
              <rgb name="specular_reflectance" value="0.8"/></bsdf>)"}});
     const renderer::Material& material = scene.geometry.objects.at(0).material;
-    EXPECT_EQ(material.model, renderer::SurfaceModel::Ggx);
+    EXPECT_EQ(material.model, renderer::model_of({.metallic = true}));
     EXPECT_NEAR(material.roughness, 0.5, 1e-12);  // alpha is its square
     EXPECT_NEAR(material.albedo, 0.8, 1e-12);
     // eta = 2, k = 1: (1 + 1) / (9 + 1).

@@ -98,7 +98,7 @@ TEST(YtalScene, MaterialsAreTranslated) {
         return import_yaml("", geometry).geometry.objects.at(0).material;
     };
     const auto copper = material("    id: copper\n    alpha: 0.25\n");
-    EXPECT_EQ(copper.model, renderer::SurfaceModel::Ggx);
+    EXPECT_EQ(copper.model, renderer::model_of({.metallic = true}));
     EXPECT_NEAR(copper.roughness, 0.5, 1e-12);
     const auto custom = material(
         "    id: custom\n    text: |\n      <bsdf type=\"diffuse\">\n"

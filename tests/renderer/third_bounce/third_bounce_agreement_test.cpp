@@ -121,7 +121,7 @@ TEST(AutoMethod, AddsPathsForNarrowLobesAndHigherOrders) {
         {Vec3(-0.3, -0.2, 0.6), Vec3(0.3, 0, 0), Vec3(0, 0.4, 0), 0.8}));
     geometry.objects.push_back(test_support::parallelogram_object(
         {Vec3(0.05, -0.2, 0.6), Vec3(0.3, 0, -0.1), Vec3(0, 0.4, 0), 0.9}));
-    geometry.objects[1].material.model = renderer::SurfaceModel::Ggx;
+    geometry.objects[1].material.model = renderer::model_of({.metallic = true});
     geometry.objects[1].material.roughness = 0.16;
     const renderer::Scene scene(std::move(geometry), scan, renderer::RelayWall{});
     renderer::RenderSettings settings;

@@ -24,7 +24,7 @@ const core::TimeAxis kRetroAxis{0.8, 0.02, 60};
 renderer::Scene scene_of(const core::WallScan& scan) {
     renderer::SceneGeometry geometry;
     geometry.objects.push_back(test_support::parallelogram_object(test_support::kTiltedPanel));
-    geometry.objects.back().material.model = renderer::SurfaceModel::Retroreflective;
+    geometry.objects.back().material.model = renderer::model_of({.retroreflective = true});
     return {std::move(geometry), scan, renderer::RelayWall{}};
 }
 

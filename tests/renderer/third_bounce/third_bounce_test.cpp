@@ -341,7 +341,7 @@ TEST(ThirdBounceScenes, MethodNamesWhatItCannotDo) {
 
     const core::WallScan scan = test_support::confocal_scan(kThreeWallPoints);
     renderer::SceneGeometry geometry = geometry_of({kTiltedPanel});
-    geometry.objects[0].material.model = renderer::SurfaceModel::Ggx;
+    geometry.objects[0].material.model = renderer::model_of({.metallic = true});
     geometry.objects[0].material.roughness = 0.1;
     const renderer::Scene scene = scene_of(std::move(geometry), scan);
     EXPECT_ERROR_WITH(renderer::render(scene, scan, kAxis, settings_for(0.01), {}),
