@@ -2,6 +2,7 @@
 #include "apps/sweep/sweep_summary.h"
 
 #include "apps/version.h"
+#include "nlos/pictures/picture.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/settings_json.h"
 
