@@ -28,10 +28,10 @@ int num_subpaths(std::size_t num_pixels, int num_samples) {
 // Connections seldom hit narrow lobes and leave them to few walks: images would become noisier than
 // by walks alone.
 bool has_narrow_lobes(const Scene& scene) {
-    constexpr double kNarrowAlpha = 0.4 * 0.4;
+    constexpr double kLeastAlpha = 0.4 * 0.4;
     return std::ranges::any_of(scene.objects(), [](const Object& object) {
         const auto lobe = lobe_of(make_bsdf(object.material), 1.0);
-        return lobe && lobe->alpha < kNarrowAlpha;
+        return lobe && lobe->alpha < kLeastAlpha;
     });
 }
 
