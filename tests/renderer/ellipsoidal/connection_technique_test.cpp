@@ -151,7 +151,8 @@ TEST(ConnectionTechnique, EstimatesTheIntegralOverAllFacets) {
         // Towards the middle of some facet, and not so narrow that few draws see the rest of it.
         const auto aim = static_cast<std::uint32_t>(rng.uniform() * 60);
         const Vec3 middle = scene.facet(aim).point(1.0 / 3.0, 1.0 / 3.0);
-        const renderer::LobeOnFacet lobe{aim, {(middle - q.ends.foci.a).normalized(), middle, 0.1}};
+        const renderer::LobeOnFacet lobe{
+            aim, {(middle - q.ends.foci.a).normalized(), middle, 0.1}, 0.75};
         enum class Kind { Plain, Cut, Lobe };
         for (const Kind kind : {Kind::Plain, Kind::Cut, Kind::Lobe}) {
             double sum = 0.0;
