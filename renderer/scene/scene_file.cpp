@@ -3,7 +3,7 @@
 
 #include "renderer/core/process.h"
 #include "renderer/core/settings_json.h"
-#include "renderer/gltf/gltf.h"
+#include "renderer/scene/measurement.h"
 #include "renderer/scene/sensor_settings.h"
 
 #include <fmt/core.h>
@@ -49,55 +49,10 @@ void require_geometry(const SceneDescription& scene, const std::string& where) {
                 "must name a .glb, .gltf, .obj, .ply or .stl file, unless objects have meshes");
 }
 
-void validate_normals(const std::vector<Vec3>& points,
-                      const std::vector<Vec3>& normals,
-                      const std::string& where) {
-    require(points.size() == normals.size(),
-            where,
-            fmt::format("{} normals for {} points", normals.size(), points.size()),
-            "one normal per point");
-    for (const Vec3& normal : normals) {
-        require(normal.norm() > 1e-9, where + " length", normal.norm(), "above 0");
-    }
-}
-
-void validate_scan(const ScanSettings& scan, const std::string& where) {
-    core::check_ranges(scan, where);
-    validate_sensor(scan, where);
-    if (scan.pattern.of_sensor) return;
-    validate_normals(scan.sensing_points_m, scan.sensing_normals, where + ".sensing_normals");
-    validate_normals(
-        scan.illumination_points_m, scan.illumination_normals, where + ".illumination_normals");
-    const std::size_t num_lit = scan.illumination_points_m.size();
-    require(scan.pattern != core::ScanPattern::Single || num_lit <= 1,
-            where + ".illumination_points_m",
-            static_cast<double>(num_lit),
-            "one point for a single scan");
-    require(scan.pattern != core::ScanPattern::Confocal || num_lit == 0,
-            where + ".illumination_points_m",
-            "points for a confocal scan",
-            "left out: the sensing points are lit");
-    require(scan.opl_origin != core::OplOrigin::Device || (scan.laser_m && scan.detector_m),
-            where + ".opl_origin",
-            "device without laser_m and detector_m",
-            "relay_wall, or both positions given");
-}
-
 // Refuses scans whose histograms alone could not be held, before anything is allocated.
 void validate_size(const SceneDescription& scene, const std::string& where) {
-    const ScanSettings& scan = scene.scan;
-    const auto count = [](const std::vector<Vec3>& points, const std::array<int, 2>& shape) {
-        return points.empty() ? static_cast<double>(shape[0]) * shape[1]
-                              : static_cast<double>(points.size());
-    };
-    double pairs = count(scan.sensing_points_m, scan.sensing_points);
-    if (scan.pattern.of_sensor) {
-        pairs = scan.sensor->num_zones();
-    } else if (scene.camera) {
-        pairs = static_cast<double>(scene.camera->num_pixels());
-    } else if (scan.pattern == core::ScanPattern::Exhaustive) {
-        pairs *= count(scan.illumination_points_m, scan.illumination_points);
-    }
+    const Measurement& measurement = measurement_of(scene);
+    const double pairs = measurement.num_pairs(scene);
     const double available = static_cast<double>(core::available_memory_bytes());
     const auto& [columns, rows] = scene.ground_truth.depth_resolution;
     const double depth_map_bytes = sizeof(double) * static_cast<double>(columns) * rows;
@@ -117,75 +72,10 @@ void validate_size(const SceneDescription& scene, const std::string& where) {
         values += pairs * per_pair;
     }
     if (values * sizeof(float) > available) {
-        throw Error(where + (scene.camera ? "camera.resolution" : "scan.sensing_points") +
-                        " and time_axis.num_bins",
+        throw Error(where + measurement.size_key + " and time_axis.num_bins",
                     fmt::format("found {:.3g} values in all", values),
                     fmt::format("must fit into {:.1f} GB of memory", available * 1e-9));
     }
-}
-
-core::WallPoints wall_grid(const RelayWall& wall, const std::array<int, 2>& shape) {
-    const core::Transform world_from_wall = wall.world_from_wall();
-    core::WallPoints points;
-    points.grid = {static_cast<std::size_t>(shape[0]), static_cast<std::size_t>(shape[1])};
-    for (int ix = 0; ix < shape[0]; ++ix) {
-        for (int iy = 0; iy < shape[1]; ++iy) {
-            const double x = wall.size_m[0] * ((ix + 0.5) / shape[0] - 0.5);
-            const double y = wall.size_m[1] * ((iy + 0.5) / shape[1] - 0.5);
-            points.positions.push_back(world_from_wall * Vec3(x, y, 0.0));
-        }
-    }
-    points.normals.assign(points.positions.size(), wall.normal.normalized());
-    return points;
-}
-
-core::WallPoints explicit_points(const std::vector<Vec3>& positions,
-                                 const std::vector<Vec3>& normals) {
-    core::WallPoints points;
-    points.positions = positions;
-    for (const Vec3& normal : normals) points.normals.push_back(normal.normalized());
-    return points;
-}
-
-core::WallPoints illumination_points(const SceneDescription& scene,
-                                     const core::WallPoints& sensing) {
-    const ScanSettings& scan = scene.scan;
-    if (scan.pattern == core::ScanPattern::Confocal) return sensing;
-    if (!scan.illumination_points_m.empty()) {
-        return explicit_points(scan.illumination_points_m, scan.illumination_normals);
-    }
-    if (scan.pattern == core::ScanPattern::Exhaustive) {
-        return wall_grid(scene.relay_wall, scan.illumination_points);
-    }
-    core::WallPoints spot;
-    spot.positions = {scan.illumination_m.value_or(scene.relay_wall.center_m)};
-    spot.normals = {scene.relay_wall.normal.normalized()};
-    spot.grid = {1, 1};
-    return spot;
-}
-
-// Takes pose and angle of view from the glTF camera that is named, if any is.
-void look_up_camera(const std::string& where, SceneDescription& scene) {
-    if (!scene.camera || scene.camera->name.empty()) return;
-    CameraSettings& camera = *scene.camera;
-    if (scene.geometry.empty() || is_mesh_file(scene.geometry)) {
-        throw Error(
-            where, "found \"" + camera.name + "\"", "must be an object: the geometry is no glTF");
-    }
-    std::string known;
-    for (const Camera& candidate : load_gltf(scene.geometry).cameras) {
-        known += (known.empty() ? "" : ", ") + candidate.name;
-        if (candidate.name != camera.name && candidate.lens_name != camera.name) continue;
-        camera.position_m = candidate.position;
-        camera.look_at_m = candidate.position + candidate.forward;
-        camera.up = candidate.up;
-        camera.fov_y_deg = candidate.fov_y_rad * core::kDegreesPerRadian;
-        return;
-    }
-    throw Error(where,
-                fmt::format("found \"{}\"", camera.name),
-                known.empty() ? scene.geometry + " must have perspective cameras"
-                              : "must be one of " + known);
 }
 
 // A camera measures instead of wall and scan; a file that names both means something else.
@@ -212,14 +102,6 @@ void read_value(const core::Json& json, const std::string& where, SceneTimeAxis&
 
 core::Json write_value(const SceneTimeAxis& axis) {
     return axis.automatic ? core::Json("auto") : core::write_value<SceneTimeAxis>(axis);
-}
-
-void read_value(const core::Json& json, const std::string& where, CameraSettings& camera) {
-    if (json.is_string()) {
-        camera.name = json.get<std::string>();
-    } else {
-        core::read_value<CameraSettings>(json, where, camera);
-    }
 }
 
 SceneDescription read_scene_description(const std::string& path,
@@ -255,20 +137,10 @@ void change_description(SceneDescription& scene, const core::Json& changes) {
 
 void validate(const SceneDescription& scene, const std::string& where) {
     validate_geometry(scene, where);
-    if (scene.camera) {
-        core::validate(*scene.camera, where + "camera");
-        require(!scene.camera->light_spot_m || scene.render.max_bounces >= 2,
-                where + "render.max_bounces",
-                fmt::format("{} with camera.light_spot_m", scene.render.max_bounces),
-                "at least 2: the lit spot counts as a bounce");
-    } else {
-        core::validate(scene.relay_wall, where + "relay_wall");
-        validate_scan(scene.scan, where + "scan");
-    }
+    measurement_of(scene).validate(scene, where);
     if (!scene.time_axis.automatic) core::validate(scene.time_axis, where + "time_axis");
     if (scene.velocity_axis) core::validate(*scene.velocity_axis, where + "velocity_axis");
     if (scene.frames) core::check_ranges(*scene.frames, where + "frames");
-    validate_poses(scene, where);
     validate(scene.render, where + "render");
     core::check_ranges(scene.ground_truth, where + "ground_truth");
     validate_size(scene, where);
@@ -279,54 +151,11 @@ void validate(const SceneDescription& scene, const std::string& where) {
         "box unless time_axis.num_bins is 1");
 }
 
-core::Scan make_scan(const SceneDescription& scene) {
-    if (scene.camera) return core::ImageScan{*scene.camera};
-    if (scene.scan.pattern.of_sensor) return core::scan_of_zones(make_sensor_setup(scene));
-    core::WallScan scan;
-    scan.pattern = scene.scan.pattern;
-    scan.sensing = scene.scan.sensing_points_m.empty()
-                       ? wall_grid(scene.relay_wall, scene.scan.sensing_points)
-                       : explicit_points(scene.scan.sensing_points_m, scene.scan.sensing_normals);
-    scan.illumination = illumination_points(scene, scan.sensing);
-    scan.opl_origin = scene.scan.opl_origin;
-    scan.laser_position = scene.scan.laser_m.value_or(Vec3::Zero());
-    scan.detector_position = scene.scan.detector_m.value_or(Vec3::Zero());
-    return scan;
-}
-
-void describe_scan(const core::WallScan& scan, ScanSettings& settings) {
-    settings.pattern = scan.pattern;
-    settings.sensing_points_m = scan.sensing.positions;
-    settings.sensing_normals = scan.sensing.normals;
-    settings.illumination_points_m.clear();
-    settings.illumination_normals.clear();
-    if (!scan.is_confocal()) {
-        settings.illumination_points_m = scan.illumination.positions;
-        settings.illumination_normals = scan.illumination.normals;
-    }
-    settings.opl_origin = scan.opl_origin;
-    if (scan.opl_origin == core::OplOrigin::Device) {
-        settings.laser_m = scan.laser_position;
-        settings.detector_m = scan.detector_position;
-    }
-}
-
 void refer_to_gltf(const std::string& file_name, SceneDescription& scene) {
     scene.geometry = file_name;
     scene.geometry_unit_m.reset();
     scene.geometry_up.reset();
     scene.objects.clear();
-}
-
-bool rectangle_carries_scan(const RelayWall& wall, const core::WallScan& scan) {
-    const core::Transform wall_from_world = wall.world_from_wall().inverse();
-    const double tolerance = 1e-6 * (wall.size_m[0] + wall.size_m[1]);
-    const auto lies_on_it = [&](const Vec3& point) {
-        const Vec3 p = wall_from_world * point;
-        return std::abs(p.z()) < tolerance && std::abs(p.x()) < 0.5 * wall.size_m[0] + tolerance &&
-               std::abs(p.y()) < 0.5 * wall.size_m[1] + tolerance;
-    };
-    return std::ranges::all_of(scan.path_ends(), lies_on_it);
 }
 
 }  // namespace renderer

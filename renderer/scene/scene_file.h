@@ -213,10 +213,6 @@ void validate(const SceneDescription& scene, const std::string& where);
 /// scene   a validated description
 core::Scan make_scan(const SceneDescription& scene);
 
-/// The sensor of a description whose pattern is `sensor`, in front of its wall.
-/// scene   a validated description
-core::SensorSetup make_sensor_setup(const SceneDescription& scene);
-
 /// The inverse for a scan of wall points, which are stated one by one.
 void describe_scan(const core::WallScan& scan, ScanSettings& settings);
 

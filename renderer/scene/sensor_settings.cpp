@@ -2,6 +2,7 @@
 #include "renderer/scene/sensor_settings.h"
 
 #include "renderer/core/settings_json.h"
+#include "renderer/scene/measurement.h"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -67,15 +68,12 @@ void look_up_sensor(const std::string& folder,
     }
 }
 
-void validate_sensor(const ScanSettings& scan, const std::string& where) {
-    if (!scan.pattern.of_sensor) {
-        const char* key = scan.sensor ? "sensor" : scan.pose ? "pose" : "poses";
-        require(!scan.sensor && !scan.pose && scan.poses.empty(),
-                fmt::format("{}.{}", where, key),
-                fmt::format("a value with pattern {}", core::enum_name(scan.pattern.pattern)),
-                "left out, or pattern be sensor");
-        return;
-    }
+namespace {
+
+void validate_zones(const SceneDescription& scene, const std::string& prefix) {
+    const ScanSettings& scan = scene.scan;
+    const std::string where = prefix + "scan";
+    validate_wall(scene, prefix);
     require(scan.sensor.has_value(),
             where + ".sensor",
             "none with pattern sensor",
@@ -95,18 +93,15 @@ void validate_sensor(const ScanSettings& scan, const std::string& where) {
     for (std::size_t i = 0; i < scan.poses.size(); ++i) {
         core::validate(scan.poses[i], fmt::format("{}.poses[{}]", where, i));
     }
-}
-
-void validate_poses(const SceneDescription& scene, const std::string& where) {
-    if (scene.camera || scene.scan.poses.empty()) return;
+    if (scan.poses.empty()) return;
     const std::size_t frames = scene.frames ? static_cast<std::size_t>(scene.frames->count) : 1;
-    require(scene.scan.poses.size() == frames,
-            where + "scan.poses",
-            fmt::format("{} poses", scene.scan.poses.size()),
+    require(scan.poses.size() == frames,
+            where + ".poses",
+            fmt::format("{} poses", scan.poses.size()),
             fmt::format("as many as frames.count, {}", frames));
 }
 
-core::SensorSetup make_sensor_setup(const SceneDescription& scene) {
+core::Scan make_zones(const SceneDescription& scene) {
     core::SensorSetup setup;
     setup.model = *scene.scan.sensor;
     setup.poses = scene.scan.poses;
@@ -114,7 +109,19 @@ core::SensorSetup make_sensor_setup(const SceneDescription& scene) {
         scene.scan.pose.value_or(setup.poses.empty() ? core::SensorPose{} : setup.poses.front());
     setup.subsamples = scene.scan.subsamples;
     setup.wall = scene.relay_wall;
-    return setup;
+    return core::scan_of_zones(setup);
+}
+
+}  // namespace
+
+const Measurement& sensor_measurement() {
+    static const Measurement row{"scan.sensing_points",
+                                 validate_zones,
+                                 [](const SceneDescription& scene) {
+                                     return static_cast<double>(scene.scan.sensor->num_zones());
+                                 },
+                                 make_zones};
+    return row;
 }
 
 }  // namespace renderer

@@ -22,10 +22,4 @@ void look_up_sensor(const std::string& folder,
                     const core::Json& keys,
                     SceneDescription& scene);
 
-/// Throws core::Error unless a scan has a sensor with a pose if and only if its pattern says so.
-void validate_sensor(const ScanSettings& scan, const std::string& where);
-
-/// Throws core::Error unless a sensor that moves has a pose per frame.
-void validate_poses(const SceneDescription& scene, const std::string& where);
-
 }  // namespace renderer
