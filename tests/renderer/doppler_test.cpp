@@ -201,8 +201,8 @@ TEST_P(DopplerOf, SpectrumOfAPlateIsTheQuadrature) {
     const double level = test_support::sidak_level(1e-3, 4U * 40U);
     for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
         std::vector<double> expected(40);
-        const Vec3& l = scan.illumination.positions[0];
-        const Vec3& s = scan.sensing.positions[pair];
+        const Vec3& l = scan.wall().illumination.positions[0];
+        const Vec3& s = scan.wall().sensing.positions[pair];
         for (int i = 0; i < kSteps * kSteps; ++i) {
             const Vec3 x = plate.corner + (i / kSteps + 0.5) / kSteps * plate.u +
                            (i % kSteps + 0.5) / kSteps * plate.v;

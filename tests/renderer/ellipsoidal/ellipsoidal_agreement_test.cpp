@@ -138,7 +138,7 @@ TEST(EllipsoidalTracer, GatesOfAllShapesAgreeWithPaths) {
 // Eight samples come one by one: then, too, every kind of them has its share in the mean.
 TEST(EllipsoidalTracer, FewSamplesHaveNoBias) {
     FewPairs few("letter");
-    few.scan = renderer::make_scan(few.description);
+    few.scan = renderer::make_scan(few.description).wall();
     const core::Capture integrated = few.render(few.settings(Estimator::ThirdBounce, 3, 1));
     const auto sum_of = [](const core::Capture& capture) {
         const auto values = capture.transient.values();
