@@ -43,7 +43,7 @@ TEST(PreparedCapture, CropKeepsPointsBinsAndGridTogether) {
         crop.y_range_m = {-0.01, 0.11};
         crop.opl_range_m = {0.25, 0.31};
         const PreparedCapture cut = crop_capture(capture, crop);
-        EXPECT_EQ(cut.scan.wall().sensing.grid, (std::array<std::size_t, 2>{3, 2}));
+        EXPECT_EQ(cut.scan.sensing.grid, (std::array<std::size_t, 2>{3, 2}));
         EXPECT_EQ(cut.time_axis.num_bins, 6);
         EXPECT_NEAR(cut.time_axis.opl_start_m, 0.25, 1e-12);
         ASSERT_EQ(cut.transient().num_pairs(), cut.scan.num_pairs());
@@ -51,9 +51,8 @@ TEST(PreparedCapture, CropKeepsPointsBinsAndGridTogether) {
             // The histogram of the same two points in the capture.
             std::size_t original = 0;
             const auto same = [](const Vec3& a, const Vec3& b) { return (a - b).norm() < 1e-9; };
-            const Vec3 l =
-                cut.scan.wall().illumination.positions[cut.scan.wall().illumination_index(pair)];
-            const Vec3 s = cut.scan.wall().sensing.positions[cut.scan.wall().sensing_index(pair)];
+            const Vec3 l = cut.scan.illumination_point(pair);
+            const Vec3 s = cut.scan.sensing_point(pair);
             const core::WallScan& scan = capture.scan.wall();
             while (!same(scan.illumination.positions[scan.illumination_index(original)], l) ||
                    !same(scan.sensing.positions[scan.sensing_index(original)], s)) {
