@@ -85,11 +85,12 @@ std::string surfaces_kept(const RenderSettings& settings, const ExcludedObjects&
     return drops ? "all but the excluded ones" : "all";
 }
 
-void warn_of_dropped_signal(const RenderTask& task, RenderResult& result) {
+void warn_of_dropped_signal(const RenderTask& task, const RenderResult& result) {
     if (task.settings.exclude != Exclusion::Drop || result.excluded.names.empty()) return;
+    if (!task.progress.warn) return;
     const DroppedSignal dropped = measure_dropped_signal(task, kMeasuredPairs);
     const double kept = kept_signal(result.capture, dropped.pairs);
-    result.warnings.push_back(drop_warning(dropped, kept, result.excluded.names));
+    task.progress.warn(drop_warning(dropped, kept, result.excluded.names));
 }
 
 RenderResult render_ellipsoidal(const RenderTask& task) {

@@ -24,10 +24,10 @@ DroppedSignal measure_dropped_signal(const RenderTask& task, std::size_t max_pai
 /// Which surfaces connections end on, in words.
 std::string surfaces_kept(const RenderSettings& settings, const ExcludedObjects& excluded);
 
-/// With excluded surfaces dropped, adds a warning that states what share of the signal is lost,
-/// estimated on some of the pairs.
+/// With excluded surfaces dropped, warns of the share of the signal that is lost, estimated on some
+/// of the pairs.
 ///
 /// result   with the capture and what was excluded
-void warn_of_dropped_signal(const RenderTask& task, RenderResult& result);
+void warn_of_dropped_signal(const RenderTask& task, const RenderResult& result);
 
 }  // namespace renderer

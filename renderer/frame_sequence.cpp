@@ -3,8 +3,10 @@
 
 #include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/core/random.h"
+#include "renderer/estimators.h"
 #include "renderer/render.h"
-#include "renderer/restir_render.h"
+
+#include <fmt/core.h>
 
 #include <algorithm>
 
@@ -37,8 +39,16 @@ core::Scan pose_sensor(const core::Scan& scan, int frame) {
 }  // namespace
 
 FrameRenderer make_frame_renderer(const core::Scan& scan, const RenderSettings& settings) {
-    if (settings.method == Estimator::Restir && scan.as<core::SensorScan>() == nullptr)
-        return make_restir_frame_renderer(scan, settings);
+    const EstimatorTraits& method = traits_of(settings.method);
+    core::require(
+        !settings.target_error || method.has_independent_frames,
+        "render.target_error",
+        fmt::format("one for a sequence of frames by {}, which share their past, so that "
+                    "their spread tells no error",
+                    method.name),
+        "null, or the method " + estimators_that(&EstimatorTraits::has_independent_frames));
+    const auto make = method_of(settings.method).make_frame_renderer;
+    if (make != nullptr) return make(scan, settings);
     return [](const Frame& frame, const core::Scan& frame_scan, const core::Progress& progress) {
         const core::Scan posed = pose_sensor(frame_scan, frame.index);
         return render(*frame.scene, posed, frame.axes, frame.settings, progress);
@@ -61,13 +71,14 @@ RenderResult render_frames(std::shared_ptr<const Scene> scene,
                            const SceneDescription& description,
                            const FrameRenderer& render_frame,
                            const core::Progress& progress) {
+    const core::HistogramAxes first_axes{description.time_axis, description.velocity_axis};
+    require_possible({*scene, scan, first_axes, description.render, progress});
     const FrameSettings& frames = *description.frames;
     const bool moves = frames.frame_s > 0.0 && anything_moves(*scene);
     RenderResult sequence;
     core::FrameSequence recorded{{}, frames.gate_step_m, frames.frame_s};
     for (int i = 0; i < frames.count && !sequence.interrupted; ++i) {
-        Frame frame{
-            i, scene, {description.time_axis, description.velocity_axis}, description.render};
+        Frame frame{i, scene, first_axes, description.render};
         if (moves && i > 0) {
             frame.scene = std::make_shared<const Scene>(
                 moved_by(*scene, i * frames.frame_s), scan, description.relay_wall);
@@ -75,8 +86,9 @@ RenderResult render_frames(std::shared_ptr<const Scene> scene,
         frame.axes.time.opl_start_m += i * frames.gate_step_m;
         frame.settings.seed = seed_of_frame(description.render.seed, i);
         const double count = frames.count;
-        RenderResult rendered =
-            render_frame(frame, scan, progress.part(i / count, (i + 1) / count));
+        core::Progress part = progress.part(i / count, (i + 1) / count);
+        if (i > 0) part.warn = nullptr;  // what holds for one frame holds for the next
+        RenderResult rendered = render_frame(frame, scan, part);
         rendered.num_rays += sequence.num_rays;
         rendered.seconds += sequence.seconds;
         sequence = std::move(rendered);

@@ -1,29 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/progress.h"
-#include "renderer/render_result.h"
+#include "renderer/render_task.h"
 #include "renderer/scene/scene_file.h"
-
-#include <functional>
-#include <memory>
 
 namespace renderer {
 
-/// One frame of a sequence, ready to be rendered.
-struct Frame {
-    int index = 0;
-    std::shared_ptr<const Scene> scene;  ///< at the time of the frame; shared while nothing moves
-    core::HistogramAxes axes;            ///< with the gate of the frame
-    RenderSettings settings;             ///< with the seed of the frame
-};
-
-/// Renders one frame. Frames are rendered in order; any state kept between them is its own.
-using FrameRenderer =
-    std::function<RenderResult(const Frame&, const core::Scan&, const core::Progress&)>;
-
-/// The frame renderer for the method in the settings: `restir` reuses the paths of earlier frames,
-/// the others render() every frame independently.
+/// The frame renderer of the estimator in the settings: `restir` reuses the paths of earlier
+/// frames, the others render every frame independently.
 ///
 /// scan   must outlive what is returned
 FrameRenderer make_frame_renderer(const core::Scan& scan, const RenderSettings& settings);

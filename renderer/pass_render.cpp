@@ -6,7 +6,6 @@
 #include "renderer/core/stopwatch.h"
 #include "renderer/film/transient_accumulator.h"
 #include "renderer/pass_plan.h"
-#include "renderer/path/path_tracer.h"
 
 #include <fmt/core.h>
 
@@ -78,56 +77,129 @@ struct Tile {
     std::size_t count = 0;
 };
 
-// Runs passes over the pairs of a tile until the plan, the clock or the caller ends them.
-struct PassLoop {
-    const RenderTask& task;
-    const PassWork& work;
-    SensorPairs sensor_pairs;
-    TransientAccumulator::SquaredNorms norms{};  ///< of all tiles so far
+// Renders one tile: rounds of passes until the plan, the clock or the caller ends them.
+class TileRender {
+ public:
+    TileRender(const RenderTask& task,
+               const PassWork& work,
+               const SensorPairs& sensor_pairs,
+               const Tile& tile)
+        : task_(task),
+          work_(work),
+          sensor_pairs_(sensor_pairs),
+          tile_(tile),
+          plan_(samples() ? plan_passes(task.scan, task.settings) : PassPlan{0, 1}),
+          rule_(task.settings, plan_.num_passes, work.precomputed),
+          sums_(tile.count, task.axes, channel_count(task.settings), task.settings.variance) {}
 
-    /// Adds the tile's histograms, samples and rays to `result`.
-    void run(const Tile& tile, const core::Progress& progress, RenderResult& result);
-    /// Of passes [first, first + count).
+    /// Adds rays, and whether the caller ended it, to `result`.
+    void run(const core::Progress& progress, RenderResult& result);
+    /// Adds histograms and samples to `result`, and squared norms to those of other tiles.
+    void write(RenderResult& result, TransientAccumulator::SquaredNorms& norms) const;
+
+ private:
     using Subpaths = std::vector<std::unique_ptr<const LightSubpaths>>;
-    Subpaths trace_subpaths(int first, int count, int samples) const;
-    /// Returns the number of rays.
-    std::uint64_t run_passes(
-        const Tile& tile, int first, int count, int samples, HistogramSums& sums) const;
+
+    bool samples() const { return work_.tracer != nullptr; }
+    double trace_round(const core::Progress& progress, RenderResult& result);
+    void lengthen_passes_after_pilot(double share);
+    Subpaths trace_subpaths(int first, int count) const;
+    std::uint64_t run_passes(int first, int count);
+    std::uint64_t run_pass(std::size_t pair,
+                           int pass,
+                           const LightSubpaths* subpaths,
+                           PassHistogram& histogram) const;
+
+    const RenderTask& task_;
+    const PassWork& work_;
+    const SensorPairs& sensor_pairs_;
+    Tile tile_;
+    PassPlan plan_;
+    StoppingRule rule_;
+    HistogramSums sums_;
+    core::Stopwatch watch_;
+    int first_ = 0;  ///< passes before it were a pilot
+    int done_ = 0;   ///< passes since
+    double paths_ = 0.0;
 };
 
+void TileRender::run(const core::Progress& progress, RenderResult& result) {
+    while (true) {
+        const double share = trace_round(progress, result);
+        if (share >= 1.0) return;
+        result.interrupted = progress.should_stop();
+        if (result.interrupted) return;
+        lengthen_passes_after_pilot(share);
+    }
+}
+
+// Returns the share of the work that is done.
+double TileRender::trace_round(const core::Progress& progress, RenderResult& result) {
+    const int count = next_round(plan_, task_.settings, done_, watch_.seconds());
+    result.num_rays += run_passes(first_ + done_, count);
+    done_ += count;
+    const double elapsed = watch_.seconds();
+    const double share = samples() ? rule_.share_done(done_, elapsed, sums_.time) : 1.0;
+    paths_ += static_cast<double>(tile_.count) * plan_.samples_per_pass * count;
+    progress.update(share, fmt::format("{:.2f} M paths/s", paths_ / elapsed * 1e-6));
+    return share;
+}
+
+void TileRender::lengthen_passes_after_pilot(double share) {
+    if (!is_open_ended(task_.settings) || first_ + done_ != kPilotPasses) return;
+    const auto longer = plan_after_pilot(task_.scan, task_.settings, share);
+    if (!longer) return;
+    plan_ = *longer;
+    rule_ = {task_.settings, plan_.num_passes, work_.precomputed};
+    first_ = std::exchange(done_, 0);
+    sums_.reset();
+}
+
 // Pairs have streams of random numbers up to num_pairs() - 1; what they share has the next one.
-PassLoop::Subpaths PassLoop::trace_subpaths(int first, int count, int samples) const {
+TileRender::Subpaths TileRender::trace_subpaths(int first, int count) const {
     Subpaths subpaths;
-    for (int pass = first; work.tracer != nullptr && pass < first + count; ++pass) {
+    for (int pass = first; samples() && pass < first + count; ++pass) {
         const core::Rng rng(
-            task.settings.seed, task.scan.num_pairs(), static_cast<std::uint64_t>(pass));
-        subpaths.push_back(work.tracer->trace_subpaths(sensor_pairs, samples, rng));
+            task_.settings.seed, task_.scan.num_pairs(), static_cast<std::uint64_t>(pass));
+        subpaths.push_back(
+            work_.tracer->trace_subpaths(sensor_pairs_, plan_.samples_per_pass, rng));
     }
     return subpaths;
 }
 
-std::uint64_t PassLoop::run_passes(
-    const Tile& tile, int first, int count, int samples, HistogramSums& sums) const {
+// Returns the number of rays.
+std::uint64_t TileRender::run_pass(std::size_t pair,
+                                   int pass,
+                                   const LightSubpaths* subpaths,
+                                   PassHistogram& histogram) const {
+    std::uint64_t num_rays = 0;
+    core::Rng rng(task_.settings.seed, pair, static_cast<std::uint64_t>(pass));
+    if (samples()) {
+        num_rays = work_.tracer->trace(
+            sensor_pairs_, pair, plan_.samples_per_pass, rng, histogram, subpaths);
+    }
+    if (!sensor_pairs_.is_image() && work_.adds_short_paths) {
+        add_short_paths(task_.scene, sensor_pairs_.ends(pair), task_.settings, histogram);
+    }
+    return num_rays;
+}
+
+// Likewise of passes [first, first + count).
+std::uint64_t TileRender::run_passes(int first, int count) {
     constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
     std::atomic<std::size_t> bad_pair{kNone};
     std::atomic<std::uint64_t> num_rays{0};
-    const Subpaths subpaths = trace_subpaths(first, count, samples);
+    const Subpaths subpaths = trace_subpaths(first, count);
     for (const auto& of_pass : subpaths) num_rays += of_pass != nullptr ? of_pass->num_rays() : 0;
-    core::parallel_blocks(tile.count, kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
-        PassHistogram histogram(task.axes, task.settings.gate, channel_count(task.settings));
+    core::parallel_blocks(tile_.count, kPairsPerBlock, [&](std::size_t begin, std::size_t end) {
+        PassHistogram histogram(task_.axes, task_.settings.gate, channel_count(task_.settings));
         for (std::size_t i = begin; i < end; ++i) {
-            const std::size_t pair = tile.begin + i;
-            for (int pass = first; pass < first + count; ++pass) {
-                core::Rng rng(task.settings.seed, pair, static_cast<std::uint64_t>(pass));
-                if (work.tracer != nullptr) {
-                    const auto& of_pass = subpaths[static_cast<std::size_t>(pass - first)];
-                    num_rays += work.tracer->trace(
-                        sensor_pairs, pair, samples, rng, histogram, of_pass.get());
-                }
-                if (!sensor_pairs.is_image() && work.adds_short_paths) {
-                    add_short_paths(task.scene, sensor_pairs.ends(pair), task.settings, histogram);
-                }
-                sums.add_pass(i, histogram);
+            const std::size_t pair = tile_.begin + i;
+            for (int k = 0; k < count; ++k) {
+                const LightSubpaths* const of_pass =
+                    samples() ? subpaths[static_cast<std::size_t>(k)].get() : nullptr;
+                num_rays += run_pass(pair, first + k, of_pass, histogram);
+                sums_.add_pass(i, histogram);
             }
             if (histogram.num_non_finite() > 0) bad_pair = std::min(bad_pair.load(), pair);
             if (bad_pair != kNone) return;
@@ -140,67 +212,19 @@ std::uint64_t PassLoop::run_passes(
                     bad_pair.load(),
                     first,
                     first + count - 1,
-                    task.settings.seed));
+                    task_.settings.seed));
 }
 
-void PassLoop::run(const Tile& tile, const core::Progress& progress, RenderResult& result) {
-    const core::Stopwatch watch;
-    const bool samples = work.tracer != nullptr;
-    PassPlan plan = samples ? plan_passes(task.scan, task.settings) : PassPlan{0, 1};
-    HistogramSums sums(tile.count, task.axes, channel_count(task.settings), task.settings.variance);
-    std::optional<StoppingRule> rule;
-    int first = 0;  // passes before it were a pilot
-    int pass = 0;
-    double paths = 0.0;
-    const auto share_after_round = [&] {
-        if (pass == 0) rule.emplace(task.settings, plan.num_passes, work.precomputed);
-        const int count = next_round(plan, task.settings, pass, watch.seconds());
-        result.num_rays += run_passes(tile, first + pass, count, plan.samples_per_pass, sums);
-        pass += count;
-        const double elapsed = watch.seconds();
-        const double share = samples ? rule->share_done(pass, elapsed, sums.time) : 1.0;
-        paths += static_cast<double>(tile.count) * plan.samples_per_pass * count;
-        progress.update(share, fmt::format("{:.2f} M paths/s", paths / elapsed * 1e-6));
-        return share;
-    };
-    while (true) {
-        const double share = share_after_round();
-        if (share >= 1.0) break;
-        result.interrupted = progress.should_stop();
-        if (result.interrupted) break;
-        if (!is_open_ended(task.settings) || first + pass != kPilotPasses) continue;
-        const auto longer = plan_after_pilot(task.scan, task.settings, share);
-        if (!longer) continue;
-        plan = *longer;
-        first = std::exchange(pass, 0);
-        sums.reset();
-    }
-    if (samples && pass > 1) {
-        const auto of_tile = sums.time.squared_norms(pass, work.precomputed.transient);
+void TileRender::write(RenderResult& result, TransientAccumulator::SquaredNorms& norms) const {
+    if (samples() && done_ > 1) {
+        const auto of_tile = sums_.time.squared_norms(done_, work_.precomputed.transient);
         norms.noise += of_tile.noise;
         norms.signal += of_tile.signal;
-        result.estimated_error = relative_error(norms, work.precomputed);
+        result.estimated_error = relative_error(norms, work_.precomputed);
     }
-    sums.write_to(result.capture, tile.begin, pass);
+    sums_.write_to(result.capture, tile_.begin, done_);
     result.samples_per_pair =
-        static_cast<std::uint64_t>(plan.samples_per_pass) * static_cast<std::uint64_t>(pass);
-}
-
-constexpr std::size_t kMaxPairs = 128;
-constexpr std::size_t kRuns = 16;                      ///< independent, taken in couples
-constexpr int kSamples = 256;                          ///< per pair and run
-constexpr std::uint64_t kTruncationItem = 1ULL << 41;  ///< for random numbers of its own
-
-// What a pair receives in each order and all later ones: [order - 1][bin].
-std::vector<double> tails_of(PassHistogram& histogram, std::size_t num_orders, std::size_t bins) {
-    std::vector<double> tails(num_orders * bins);
-    histogram.drain(
-        [&](std::size_t begin, std::span<const double> values) {
-            std::copy(values.begin(), values.end(), tails.data() + begin);
-        },
-        [](std::size_t, std::span<const double>) {});
-    for (std::size_t i = (num_orders - 1) * bins; i-- > 0;) tails[i] += tails[i + bins];
-    return tails;
+        static_cast<std::uint64_t>(plan_.samples_per_pass) * static_cast<std::uint64_t>(done_);
 }
 
 }  // namespace
@@ -239,7 +263,8 @@ RenderResult render_passes(const RenderTask& task, const PassWork& work) {
     require_memory_for(task, tile_pairs);
     RenderResult result;
     result.capture = empty_capture(task.scan, task.axes, task.settings);
-    PassLoop loop{task, work, SensorPairs(task.scene, task.scan)};
+    const SensorPairs sensor_pairs(task.scene, task.scan);
+    TransientAccumulator::SquaredNorms norms;
     for (std::size_t begin = 0; begin < num_pairs; begin += tile_pairs) {
         const Tile tile{begin, std::min(tile_pairs, num_pairs - begin)};
         core::Progress part = task.progress;
@@ -248,69 +273,14 @@ RenderResult render_passes(const RenderTask& task, const PassWork& work) {
                 static_cast<double>(begin) + share * static_cast<double>(tile.count);
             task.progress.update(pairs / static_cast<double>(num_pairs), detail);
         };
-        loop.run(tile, part, result);
+        TileRender of_tile(task, work, sensor_pairs, tile);
+        of_tile.run(part, result);
+        of_tile.write(result, norms);
         if (result.interrupted && tile.count < num_pairs) {
             throw core::Failure("render", "interrupted before every part of the scan was traced");
         }
     }
     result.seconds = watch.seconds();
-    return result;
-}
-
-BounceTruncation find_bounce_truncation(const RenderTask& task, double allowed) {
-    RenderSettings measuring = task.settings;
-    measuring.by_order = true;
-    const PathTracer tracer(task.scene, measuring);
-    const SensorPairs sensor_pairs(task.scene, task.scan);
-    constexpr std::size_t kCouples = kRuns / 2;
-    const auto num_orders = static_cast<std::size_t>(task.settings.max_bounces);
-    const auto bins = static_cast<std::size_t>(task.axes.time.num_bins);
-    const std::size_t num_pairs = std::min(kMaxPairs, task.scan.num_pairs());
-    // Squared norms of the tails over these pairs, [order - 1][couple of runs]. The product of two
-    // independent estimates has no bias from their noise.
-    using Norms = Eigen::ArrayXd;
-    const Norms zero = Norms::Zero(static_cast<Eigen::Index>(num_orders * kCouples));
-    const Norms norms = core::parallel_sum<Norms>(num_pairs, zero, [&](std::size_t i) {
-        const std::size_t pair = (2 * i + 1) * task.scan.num_pairs() / (2 * num_pairs);
-        Norms result = zero;
-        PassHistogram histogram(
-            {task.axes.time, {}}, task.settings.gate, task.settings.max_bounces);
-        std::vector<double> first;
-        for (std::size_t run = 0; run < kRuns; ++run) {
-            core::Rng rng(task.settings.seed, kTruncationItem + pair, run);
-            tracer.trace(sensor_pairs, pair, kSamples, rng, histogram);
-            std::vector<double> tails = tails_of(histogram, num_orders, bins);
-            if (run % 2 == 0) {
-                first = std::move(tails);
-                continue;
-            }
-            for (std::size_t j = 0; j < tails.size(); ++j) {
-                const std::size_t norm = j / bins * kCouples + run / 2;
-                result[static_cast<Eigen::Index>(norm)] += first[j] * tails[j];
-            }
-        }
-        return result;
-    });
-    const auto norm_from = [&](std::size_t order, double deviations) {
-        const double* const begin = norms.data() + (order - 1) * kCouples;
-        double sum = 0.0;
-        double squares = 0.0;
-        for (std::size_t c = 0; c < kCouples; ++c) {
-            sum += begin[c];
-            squares += begin[c] * begin[c];
-        }
-        const double mean = sum / kCouples;
-        const double variance = std::max(0.0, squares / kCouples - mean * mean) / (kCouples - 1);
-        return std::sqrt(std::max(0.0, mean + deviations * std::sqrt(variance)));
-    };
-    BounceTruncation result{task.settings.max_bounces, 0.0};
-    const double all = norm_from(1, 0.0);
-    if (!(all > 0.0)) return result;
-    for (; result.last > 3; --result.last) {
-        const double tail = norm_from(static_cast<std::size_t>(result.last), 2.0) / all;
-        if (tail > allowed) break;
-        result.left_out = tail;
-    }
     return result;
 }
 

@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/progress.h"
 #include "renderer/film/stopping_rule.h"
 #include "renderer/path/tracer.h"
-#include "renderer/render_result.h"
+#include "renderer/render_task.h"
 
 namespace renderer {
-
-/// The arguments of render(), which it refers to; the settings may differ from those.
-struct RenderTask {
-    const Scene& scene;
-    const core::Scan& scan;
-    const core::HistogramAxes& axes;
-    RenderSettings settings;
-    const core::Progress& progress;
-};
 
 /// What render_passes() is asked for besides the settings.
 struct PassWork {
@@ -43,17 +33,5 @@ void require_memory(const std::string& where, const std::string& what, double by
 core::Capture empty_capture(const core::Scan& scan,
                             const core::HistogramAxes& axes,
                             const RenderSettings& settings);
-
-/// How many bounce orders are worth computing.
-struct BounceTruncation {
-    int last = 3;           ///< higher orders together stay below what is allowed
-    double left_out = 0.0;  ///< their relative L2 over all of H: two sigma above the estimate
-};
-
-/// Estimates by a short run of path tracing on some pairs how much of H the last orders hold, and
-/// drops as many of them as together stay below `allowed`.
-///
-/// allowed   relative L2 over all of H
-BounceTruncation find_bounce_truncation(const RenderTask& task, double allowed);
 
 }  // namespace renderer

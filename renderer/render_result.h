@@ -33,16 +33,15 @@ struct LeftOutOrders {
 /// What render() computed and what it took.
 struct RenderResult {
     core::Capture capture;
-    std::vector<OrderSource> sources;         ///< orders 1 and 2 need no estimator
-    std::optional<double> estimated_error;    ///< relative L2 over all of H; empty: not known
-    std::optional<double> element_tolerance;  ///< of third bounces, see RenderSettings
-    std::optional<LeftOutOrders> left_out;    ///< counts as part of the error
+    std::vector<OrderSource> sources;          ///< orders 1 and 2 need no estimator
+    std::optional<double> estimated_error;     ///< relative L2 over all of H; empty: not known
+    std::optional<double> element_tolerance;   ///< of third bounces, see RenderSettings
+    std::optional<LeftOutOrders> left_out;     ///< counts as part of the error
     std::optional<SmoothingWidths> smoothing;  ///< of what paths gave; its bias likewise
-    std::uint64_t samples_per_pair = 0;       ///< candidate paths used, whole passes
+    std::uint64_t samples_per_pair = 0;        ///< candidate paths used, whole passes
     std::uint64_t num_rays = 0;
     double seconds = 0.0;
-    ExcludedObjects excluded;  ///< from ellipsoidal connections, when there are any
-    std::vector<std::string> warnings;
+    ExcludedObjects excluded;    ///< from ellipsoidal connections, when there are any
     RestirCounts restir_counts;  ///< of restir
     bool interrupted = false;    ///< stopped early; every pair has a result
 };

@@ -80,7 +80,7 @@ void add_direct_light_of_pixel(const RestirFrame& frame,
         if (!seen) continue;
         seen->throughput = 1.0 / (count * band.pdf(place));
         const PathExtent path = walk.extent_to_light(*seen, domain.ends);
-        if (seen->order > settings.max_bounces || !histogram.admits(path.opl_m)) continue;
+        if (seen->order > settings.max_bounces || !histogram.gate().admits(path.opl_m)) continue;
         const double value = walk.connection_value(*seen, domain.ends);
         if (!(value > 0.0) || walk.light_is_hidden(*seen, domain.ends)) continue;
         histogram.add(0, path, value);
@@ -207,11 +207,6 @@ RenderResult render_restir(const RenderTask& task) {
 }
 
 FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSettings& settings) {
-    if (settings.target_error) {
-        throw core::Error("render.target_error",
-                          "found one for a sequence of frames by restir",
-                          "must be null: frames share their past, so their spread tells no error");
-    }
     struct State {
         RenderSettings settings;
         RestirRenderer renderer;

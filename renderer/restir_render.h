@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/frame_sequence.h"
-#include "renderer/pass_render.h"
+#include "renderer/render_task.h"
 
 namespace renderer {
 

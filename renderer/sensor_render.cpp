@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/sensor_render.h"
 
+#include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/core/random.h"
+#include "renderer/estimators.h"
 #include "renderer/pass_render.h"
 
 #include <algorithm>
@@ -130,32 +132,31 @@ std::optional<Scene> retroreflectors_of(const Scene& scene, const core::SensorSc
     return Scene(std::move(geometry), scan, scan.setup->wall);
 }
 
-/// Renders sums of pairs, one after another, and adds up what the zones record.
+/// Renders sums of pairs by an estimator, one after another, and adds up what the zones record.
 class ZoneRenderer {
  public:
-    ZoneRenderer(const core::SensorScan& scan,
-                 const core::TimeAxis& axis,
-                 const RenderSettings& settings,
-                 const PointRenderer& render_points)
-        : settings_(settings), render_points_(render_points) {
+    /// num_parts   sums of pairs that will be added
+    ZoneRenderer(const RenderTask& task, std::size_t num_parts)
+        : task_(task), settings_(task.settings), num_parts_(static_cast<double>(num_parts)) {
+        if (settings_.seconds) *settings_.seconds /= num_parts_;
         settings_.direct_return = false;
-        result_.capture = empty_capture(scan, axis, settings);
+        result_.capture = empty_capture(task.scan, task.axes, settings_);
     }
 
-    void add_pairs(const Scene& scene, const PairSum& sum, const core::Progress& progress);
-    void add_retroreflectors(const Scene& scene,
-                             const PairSum& sum,
-                             const core::Progress& progress);
-    void add_direct_return(core::SensorSetup setup, double wall_albedo);
+    void add_pairs(const Scene& scene, const PairSum& sum) { add_pairs(scene, sum, settings_); }
+    void add_retroreflectors(const Scene& scene, const PairSum& sum);
+    void add_direct_return(core::SensorSetup setup);
     RenderResult result() { return std::move(result_); }
 
  private:
+    void add_pairs(const Scene& scene, const PairSum& sum, RenderSettings settings);
     void add(const RenderResult& part, const PairSum& sum);
 
+    const RenderTask& task_;
     RenderSettings settings_;
-    const PointRenderer& render_points_;
     RenderResult result_;
-    std::uint64_t num_parts_ = 0;
+    double num_parts_;
+    std::uint64_t done_ = 0;  ///< parts
     bool is_error_known_ = true;
 };
 
@@ -202,34 +203,27 @@ void ZoneRenderer::add(const RenderResult& part, const PairSum& sum) {
     result_.num_rays += part.num_rays;
     result_.seconds += part.seconds;
     result_.interrupted = result_.interrupted || part.interrupted;
-    for (const std::string& warning : part.warnings) {
-        if (std::ranges::find(result_.warnings, warning) == result_.warnings.end()) {
-            result_.warnings.push_back(warning);
-        }
-    }
 }
 
-void ZoneRenderer::add_pairs(const Scene& scene,
-                             const PairSum& sum,
-                             const core::Progress& progress) {
-    RenderSettings settings = settings_;
+void ZoneRenderer::add_pairs(const Scene& scene, const PairSum& sum, RenderSettings settings) {
+    const auto done = static_cast<double>(done_);
+    const core::Progress progress =
+        task_.progress.part(done / num_parts_, (done + 1.0) / num_parts_);
     // Independent of the other parts.
-    if (num_parts_ > 0) settings.seed = core::Rng(settings.seed, 1, num_parts_).next_bits();
-    ++num_parts_;
-    add(render_points_(scene, sum.scan, settings, progress), sum);
+    if (done_ > 0) settings.seed = core::Rng(settings.seed, 1, done_).next_bits();
+    ++done_;
+    const core::Scan scan = sum.scan;
+    add(method_of(settings.method).run({scene, scan, task_.axes, settings, progress}), sum);
 }
 
-void ZoneRenderer::add_retroreflectors(const Scene& scene,
-                                       const PairSum& sum,
-                                       const core::Progress& progress) {
-    const RenderSettings all = settings_;
-    settings_.max_bounces = std::min(3, settings_.max_bounces);
-    settings_.laser_spot_m2 = 1.0;
-    add_pairs(scene, sum, progress);
-    settings_ = all;
+void ZoneRenderer::add_retroreflectors(const Scene& scene, const PairSum& sum) {
+    RenderSettings settings = settings_;
+    settings.max_bounces = std::min(3, settings.max_bounces);
+    settings.laser_spot_m2 = 1.0;
+    add_pairs(scene, sum, settings);
 }
 
-void ZoneRenderer::add_direct_return(core::SensorSetup setup, double wall_albedo) {
+void ZoneRenderer::add_direct_return(core::SensorSetup setup) {
     core::Capture& capture = result_.capture;
     setup.subsamples = kDirectSubsamples;
     const SensorFootprints footprints = core::make_footprints(setup);
@@ -241,8 +235,9 @@ void ZoneRenderer::add_direct_return(core::SensorSetup setup, double wall_albedo
                 (zone.seen.positions[k] - footprints.laser_m).norm() + zone.seen.device_m[k];
             const auto bin = capture.time_axis.bin_of(opl);
             if (!bin) continue;
-            histogram[static_cast<std::size_t>(*bin)] +=
-                zone.seen.weights[k] * zone.seen_irradiance[k] * wall_albedo / core::kPi;
+            histogram[static_cast<std::size_t>(*bin)] += zone.seen.weights[k] *
+                                                         zone.seen_irradiance[k] *
+                                                         task_.scene.wall_albedo() / core::kPi;
         }
         for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
             const auto value = static_cast<float>(histogram[bin]);
@@ -252,45 +247,18 @@ void ZoneRenderer::add_direct_return(core::SensorSetup setup, double wall_albedo
     }
 }
 
-void require_possible(const core::HistogramAxes& axes, const RenderSettings& settings) {
-    if (axes.velocity) {
-        throw core::Error("velocity_axis", "found with a sensor", "must be left out");
-    }
-    if (settings.method == Estimator::Restir) {
-        throw core::Error("render.method",
-                          "found restir with a sensor",
-                          "must be auto, third_bounce, path or ellipsoidal");
-    }
-}
-
 }  // namespace
 
-RenderResult render_zones(const Scene& scene,
-                          const core::SensorScan& scan,
-                          const core::HistogramAxes& axes,
-                          const RenderSettings& settings,
-                          const PointRenderer& render_points,
-                          const core::Progress& progress) {
-    require_possible(axes, settings);
+RenderResult render_zones(const RenderTask& task, const core::SensorScan& scan) {
     const SensorFootprints footprints = core::make_footprints(*scan.setup);
-    RenderSettings of_parts = settings;
-    const std::vector<PairSum> sums = pairs_apart(scan, footprints, axes.time.num_bins);
-    const std::optional<Scene> retroreflectors = retroreflectors_of(scene, scan);
-    const double num_parts = static_cast<double>(sums.size()) + (retroreflectors ? 1.0 : 0.0);
-    if (settings.seconds) of_parts.seconds = *settings.seconds / num_parts;
-    ZoneRenderer renderer(scan, axes.time, of_parts, render_points);
-    double done = 0.0;
-    const auto next = [&] {
-        const double begin = done / num_parts;
-        done += 1.0;
-        return progress.part(begin, done / num_parts);
-    };
-    for (const PairSum& sum : sums) renderer.add_pairs(scene, sum, next());
-    if (retroreflectors && settings.max_bounces >= 3) {
-        renderer.add_retroreflectors(
-            *retroreflectors, pairs_that_coincide(scan, footprints), next());
+    const std::vector<PairSum> sums = pairs_apart(scan, footprints, task.axes.time.num_bins);
+    const std::optional<Scene> retroreflectors = retroreflectors_of(task.scene, scan);
+    ZoneRenderer renderer(task, sums.size() + (retroreflectors ? 1 : 0));
+    for (const PairSum& sum : sums) renderer.add_pairs(task.scene, sum);
+    if (retroreflectors && task.settings.max_bounces >= 3) {
+        renderer.add_retroreflectors(*retroreflectors, pairs_that_coincide(scan, footprints));
     }
-    if (settings.direct_return) renderer.add_direct_return(*scan.setup, scene.wall_albedo());
+    if (task.settings.direct_return) renderer.add_direct_return(*scan.setup);
     RenderResult result = renderer.result();
     core::observe_live_zones(*scan.setup, result.capture);
     return result;

@@ -63,7 +63,6 @@ void run(const RenderArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
     const renderer::RenderResult result = render_to_file(
         arguments.scene, arguments.overrides, arguments.output, arguments.calibration);
-    for (const std::string& warning : result.warnings) warn(warning);
     note(result, arguments.output);
     std::string effort;
     if (result.estimated_error)

@@ -16,6 +16,7 @@
 #include "renderer/scene/scene_file.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -40,21 +41,30 @@ core::Json resampling_of(const renderer::RenderResult& result) {
     return info;
 }
 
-core::Json provenance(const std::string& scene_name,
-                      const renderer::SceneDescription& description,
-                      const renderer::RenderResult& result) {
+core::Json sources_of(const renderer::RenderResult& result) {
+    core::Json orders;
+    for (const renderer::OrderSource& source : result.sources) {
+        orders.push_back({{"first", source.first_order},
+                          {"last", source.last_order},
+                          {"estimator", std::string(core::enum_name(source.estimator))},
+                          {"surfaces", source.surfaces}});
+    }
+    return orders;
+}
+
+bool excludes_surfaces(const renderer::RenderResult& result) {
+    return std::ranges::any_of(result.sources, [](const renderer::OrderSource& source) {
+        return renderer::traits_of(source.estimator).excludes_surfaces;
+    });
+}
+
+core::Json provenance(const RenderInput& input, const renderer::RenderResult& result) {
     core::Json info;
     info["program"] = version_text();
     info["command"] = command_line();
-    info["scene"] = core::printable(scene_name);
-    const std::string names = estimator_names(result);
-    info["estimator"] = names;
-    for (const renderer::OrderSource& source : result.sources) {
-        info["orders"].push_back({{"first", source.first_order},
-                                  {"last", source.last_order},
-                                  {"estimator", std::string(core::enum_name(source.estimator))},
-                                  {"surfaces", source.surfaces}});
-    }
+    info["scene"] = core::printable(input.scene_name);
+    info["estimator"] = estimator_names(result);
+    if (!result.sources.empty()) info["orders"] = sources_of(result);
     if (result.estimated_error) info["estimated_error"] = *result.estimated_error;
     if (result.left_out) {
         info["orders_left_out"] = {{"first", result.left_out->first},
@@ -65,17 +75,20 @@ core::Json provenance(const std::string& scene_name,
         info["smoothing"] = {{"points", result.smoothing->points},
                              {"bins", result.smoothing->bins}};
     }
-    if (names == "ellipsoidal" || names == "restir") {
-        info["excluded"] = {{"mode", std::string(core::enum_name(description.render.exclude))},
+    if (excludes_surfaces(result)) {
+        const std::string_view mode = core::enum_name(input.description.render.exclude);
+        info["excluded"] = {{"mode", std::string(mode)},
                             {"objects", result.excluded.names},
                             {"connected", result.excluded.connected}};
     }
-    if (!result.warnings.empty()) info["warnings"] = result.warnings;
     info["samples_per_pair"] = result.samples_per_pair;
     if (result.restir_counts.num_merges > 0) info["restir"] = resampling_of(result);
     info["seconds"] = result.seconds;
     info["interrupted"] = result.interrupted;
-    info["settings"] = core::write_value(description);
+    info["settings"] = core::write_value(input.description);
+    if (const auto sensor = core::recorded_sensor(result.capture)) {
+        info["sensor"] = core::write_value(*sensor);
+    }
     return info;
 }
 
@@ -107,20 +120,28 @@ core::TimeAxis axis_of_device(const calib::AppliedCalibration& calibration, core
 }
 
 // Darkness has no error that could be stated relative to it.
-void report_darkness(renderer::RenderResult& result) {
+void report_darkness(renderer::RenderResult& result, const core::Progress& progress) {
     if (const auto& sequence = result.capture.sequence) {
-        const auto dark = std::count_if(
-            sequence->frames.begin(), sequence->frames.end(), [](const core::Transient& frame) {
-                return frame.is_dark();
-            });
+        const auto dark = std::ranges::count_if(sequence->frames, &core::Transient::is_dark);
         if (dark > 0) {
-            result.warnings.push_back(
+            progress.warn(
                 fmt::format("{} of {} frames hold no light", dark, sequence->frames.size()));
         }
     } else if (result.capture.transient.is_dark()) {
-        result.warnings.push_back("the capture holds no light: all its values are 0");
+        progress.warn("the capture holds no light: all its values are 0");
     }
     if (result.capture.transient.is_dark()) result.estimated_error.reset();
+}
+
+// Passes warnings on, each once, and keeps them.
+core::Progress recording(const core::Progress& progress, std::vector<std::string>& warnings) {
+    core::Progress recorded = progress;
+    recorded.warn = [&warnings, warn = progress.warn](const std::string& text) {
+        if (std::ranges::find(warnings, text) != warnings.end()) return;
+        warnings.push_back(text);
+        if (warn) warn(text);
+    };
+    return recorded;
 }
 
 std::string light_text(const renderer::LightRange& light, const core::TimeAxis& axis) {
@@ -140,15 +161,43 @@ core::Json write_light(const renderer::LightRange& light, const core::TimeAxis& 
             {"share_in_axis", light.share_between(axis.opl_start_m, axis.opl_end_m())}};
 }
 
+void choose_axis(const std::optional<renderer::LightRange>& light, RenderInput& input) {
+    renderer::SceneDescription& description = input.description;
+    const core::TimeAxis axis =
+        renderer::choose_time_axis(light, *input.scene, input.scan, description);
+    description.time_axis = {input.calibration ? axis_of_device(*input.calibration, axis) : axis};
+    renderer::validate(description, input.scene_name + ": ");
+}
+
+// With the axis between wall points of what a calibrated device records.
+renderer::SceneDescription description_between_points(const RenderInput& input) {
+    renderer::SceneDescription between = input.description;
+    if (input.calibration) {
+        between.time_axis = {calib::axis_to_render(*input.calibration, between.time_axis)};
+    }
+    return between;
+}
+
+void tell_of_light(const renderer::LightRange& light,
+                   const renderer::SceneDescription& rendered,
+                   const core::Progress& progress) {
+    if (!light.is_dark() && progress.announce) {
+        progress.announce(light_text(light, rendered.time_axis));
+    }
+    for (const auto& text : renderer::axis_warnings(light, rendered.time_axis, rendered.frames)) {
+        progress.warn(text);
+    }
+}
+
 }  // namespace
 
 std::string estimator_names(const renderer::RenderResult& result) {
-    std::string names;
+    std::vector<std::string_view> names;
     for (const renderer::OrderSource& source : result.sources) {
-        const std::string name(core::enum_name(source.estimator));
-        if (names.find(name) == std::string::npos) names += (names.empty() ? "" : " + ") + name;
+        const std::string_view name = core::enum_name(source.estimator);
+        if (std::ranges::find(names, name) == names.end()) names.push_back(name);
     }
-    return names.empty() ? "closed form" : names;
+    return names.empty() ? "closed form" : fmt::format("{}", fmt::join(names, " + "));
 }
 
 void use_calibration(calib::AppliedCalibration calibration, RenderInput& input) {
@@ -163,46 +212,28 @@ void use_calibration(calib::AppliedCalibration calibration, RenderInput& input) 
     input.calibration = std::move(calibration);
 }
 
-renderer::RenderResult render_input(RenderInput input, const core::Progress& progress) {
-    renderer::SceneDescription& description = input.description;
+renderer::RenderResult render_input(RenderInput input, const core::Progress& caller) {
+    std::vector<std::string> warnings;
+    const core::Progress progress = recording(caller, warnings);
     progress.stage(1, 3, "where the light lies", 0.0, 0.0);
-    const auto light = renderer::find_light_range(*input.scene, input.scan, description.render);
-    if (description.time_axis.automatic) {
-        core::TimeAxis axis =
-            renderer::choose_time_axis(light, *input.scene, input.scan, description);
-        description.time_axis = {input.calibration ? axis_of_device(*input.calibration, axis)
-                                                   : axis};
-        renderer::validate(description, input.scene_name + ": ");
-    }
-    renderer::SceneDescription rendered = description;
-    if (input.calibration) {
-        rendered.time_axis = {calib::axis_to_render(*input.calibration, description.time_axis)};
-    }
-    std::vector<std::string> doubts = input.scene->warnings();
-    if (light) {
-        const auto texts = renderer::axis_warnings(*light, rendered.time_axis, description.frames);
-        doubts.insert(doubts.end(), texts.begin(), texts.end());
-    }
-    if (light && !light->is_dark() && progress.announce) {
-        progress.announce(light_text(*light, rendered.time_axis));
-    }
-    for (const std::string& doubt : doubts) {
-        if (progress.warn) progress.warn(doubt);
-    }
+    for (const std::string& text : input.scene->warnings()) progress.warn(text);
+    const auto light =
+        renderer::find_light_range(*input.scene, input.scan, input.description.render);
+    if (input.description.time_axis.automatic) choose_axis(light, input);
+    const renderer::SceneDescription rendered = description_between_points(input);
+    if (light) tell_of_light(*light, rendered, progress);
 
     renderer::RenderResult result =
         run(input.scene, rendered, input.scan, progress.stage(2, 3, "rendering", 0.0, 1.0));
     if (input.calibration) {
         result.capture =
-            calib::record_with(*input.calibration, result.capture, description.time_axis);
+            calib::record_with(*input.calibration, result.capture, input.description.time_axis);
     }
-    report_darkness(result);
-    result.capture.scene_info = provenance(input.scene_name, description, result);
-    if (const auto sensor = core::recorded_sensor(result.capture)) {
-        result.capture.scene_info["sensor"] = core::write_value(*sensor);
-    }
-    if (light) result.capture.scene_info["light"] = write_light(*light, rendered.time_axis);
-    for (const std::string& doubt : doubts) result.capture.scene_info["warnings"].push_back(doubt);
+    report_darkness(result, progress);
+    core::Json& info = result.capture.scene_info;
+    info = provenance(input, result);
+    if (light) info["light"] = write_light(*light, rendered.time_axis);
+    if (!warnings.empty()) info["warnings"] = warnings;
     return result;
 }
 
@@ -228,12 +259,13 @@ renderer::RenderResult render_to_file(const std::string& scene_path,
     const core::Progress progress = bar.progress();
     renderer::RenderResult result = render_input(std::move(input), progress);
     progress.stage(3, 3, "writing", 1.0, 1.0);
-    const std::vector<std::string> left_out = nlos::write_capture(capture_path, result.capture);
+    for (const std::string& left_out : nlos::write_capture(capture_path, result.capture)) {
+        progress.warn(left_out);
+    }
     if (const auto* image = result.capture.scan.as<core::ImageScan>()) {
         core::write_text_file(with_suffix(capture_path, ".png"),
                               nlos::encode_preview_png(result.capture, image->camera));
     }
-    result.warnings.insert(result.warnings.end(), left_out.begin(), left_out.end());
     return result;
 }
 

@@ -33,7 +33,7 @@ void use_calibration(calib::AppliedCalibration calibration, RenderInput& input);
 /// where the light lies, records with the calibrated device, and notes what it did in the
 /// capture's `scene_info`.
 ///
-/// returns  what was rendered, with what looks wrong about it among the warnings
+/// progress   told what looks wrong, each once; `scene_info` keeps it
 /// throws   core::Error, core::Failure as the front doors do
 renderer::RenderResult render_input(RenderInput input, const core::Progress& progress);
 
@@ -42,7 +42,6 @@ renderer::RenderResult render_input(RenderInput input, const core::Progress& pro
 ///
 /// calibration_path   CALIBRATION.json whose points, path lengths and response the capture gets;
 ///                    empty: none
-/// returns  what was rendered, with what the format could not keep among the warnings
 /// throws   core::Error, core::Failure as the front doors do
 renderer::RenderResult render_to_file(const std::string& scene_path,
                                       const std::vector<std::string>& overrides,

@@ -20,14 +20,13 @@ using Errors = std::array<double, kTolerances.size()>;
 
 bool may_calibrate(const Recipe& recipe) {
     const renderer::RenderSettings& render = recipe.scene.render;
-    const bool has_method = render.method == renderer::Estimator::Auto ||
-                            render.method == renderer::Estimator::ThirdBounce;
     const bool draws_render =
         std::any_of(recipe.draw.begin(), recipe.draw.end(), [](const auto& entry) {
             return entry.first.starts_with("scene.render");
         });
-    return recipe.calibration_items > 0 && render.target_error && has_method &&
-           render.max_bounces == 3 && !draws_render;
+    return recipe.calibration_items > 0 && render.target_error &&
+           renderer::traits_of(render.method).integrates && render.max_bounces == 3 &&
+           !draws_render;
 }
 
 core::Capture render_with(const renderer::Scene& scene,

@@ -59,9 +59,7 @@ core::Capture render(const SceneObject& scene,
     return run_long(progress, threads, [&](const core::Progress& report) {
         input.scene = std::make_shared<const renderer::Scene>(
             renderer::make_scene(std::move(scanned.scene.geometry), input.description, input.scan));
-        renderer::RenderResult result = apps::render_input(std::move(input), report);
-        for (const std::string& text : result.warnings) report.warn(text);
-        return std::move(result.capture);
+        return apps::render_input(std::move(input), report).capture;
     });
 }
 

@@ -67,7 +67,6 @@ void SweepRunner::render(const SweepRun& run, const core::Progress& progress) {
     renderer::RenderResult result =
         render_input(std::move(input), collecting(progress, recorded.warnings));
     if (result.interrupted) return;
-    append(result.warnings, recorded.warnings);
     recorded.capture = std::move(result.capture);
     recorded.seconds = result.seconds;
     recorded.estimated_error = result.estimated_error;

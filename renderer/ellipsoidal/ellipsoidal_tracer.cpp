@@ -167,7 +167,7 @@ void EllipsoidalTracer::Walk::trace_pixel_samples(const SensorPairs& sensor_pair
         vertex->throughput /= count * places.pdf(place);
         const double value = walk.connection_value(*vertex, ends_);
         if (value > 0.0 && tracer_.scope_ != ConnectionScope::Excluded &&
-            histogram_.lets_through(opl_to_light(*vertex))) {
+            histogram_.gate().admits(opl_to_light(*vertex))) {
             connect_to_light(*vertex, value);
         }
         extend(*vertex);
@@ -190,7 +190,7 @@ void EllipsoidalTracer::Walk::weigh(int index, double ellipsoidal_pdf) {
     const auto i = static_cast<std::size_t>(index);
     const double by_walk = (1.0 - ellipsoidal_share_) * first_.pdf_area(index);
     const double both = by_walk + ellipsoidal_share_ * ellipsoidal_pdf;
-    const bool keeps = histogram_.lets_through(first_.opl_m()[i]) &&
+    const bool keeps = histogram_.gate().admits(first_.opl_m()[i]) &&
                        tracer_.in_scope(first_.facet(index)) && both > 0.0;
     first_.set_contribution(index, keeps ? first_.contributions()[i] * by_walk / both : 0.0);
 }
@@ -212,7 +212,7 @@ void EllipsoidalTracer::Walk::extend(PathVertex vertex) {
         if (!pdf) return;
         if (!tracer_.in_scope(vertex.point.facet)) continue;
         const double value = walk.connection_value(vertex, ends_);
-        if (!(value > 0.0) || !histogram_.lets_through(opl_to_light(vertex))) continue;
+        if (!(value > 0.0) || !histogram_.gate().admits(opl_to_light(vertex))) continue;
         const double other = tracer_.technique_.pdf_area(ends, lengths, vertex.point, lobe);
         ++num_rays_;
         if (walk.light_is_hidden(vertex, ends_)) continue;
@@ -234,7 +234,7 @@ void EllipsoidalTracer::Walk::connect(const PathVertex& vertex,
     const PathVertex next =
         walk.advance(vertex, draw->point, *step, step->pdf_area + num_draws * draw->pdf_area);
     const double value = walk.connection_value(next, ends_);
-    if (!(value > 0.0) || !histogram_.lets_through(opl_to_light(next))) return;
+    if (!(value > 0.0) || !histogram_.gate().admits(opl_to_light(next))) return;
     ++num_rays_;
     if (walk.light_is_hidden(next, ends_)) return;
     ++num_rays_;

@@ -9,7 +9,7 @@ namespace renderer {
 
 PassHistogram::PassHistogram(const core::HistogramAxes& axes, GateShape gate, int num_channels)
     : axis_(axes.time),
-      gate_(gate),
+      gate_(TimeGate::of_axis(axes.time, gate)),
       values_(static_cast<std::size_t>(num_channels) *
                   static_cast<std::size_t>(axes.time.num_bins) +
               1),
@@ -22,9 +22,11 @@ void PassHistogram::add(int channel, const PathExtent& path, double value) {
         ++num_non_finite_;
         return;
     }
-    int bin = 0;
-    const double weight = gate_weight(path.opl_m, bin);
-    add_to_bin(channel, bin, path.velocity_m_per_s, value * weight);
+    if (gate_.shape != GateShape::Box) {
+        add_to_bin(channel, 0, path.velocity_m_per_s, value * gate_.weight(path.opl_m));
+    } else if (const auto bin = axis_.bin_of(path.opl_m)) {
+        add_to_bin(channel, *bin, path.velocity_m_per_s, value);
+    }
 }
 
 void PassHistogram::add_to_bin(int channel, int bin, double velocity_m_per_s, double value) {
@@ -50,7 +52,7 @@ void PassHistogram::add(int channel,
     for (std::size_t i = 0; i < size; ++i) {
         num_non_finite += std::abs(values[i]) + std::abs(opl_m[i]) <= kMax ? 0 : 1;
     }
-    if (gate_ != GateShape::Box || velocity_ || num_non_finite > 0) {
+    if (gate_.shape != GateShape::Box || velocity_ || num_non_finite > 0) {
         for (std::size_t i = 0; i < size; ++i) {
             add(channel, {opl_m[i], velocity_ ? velocities[i] : 0.0}, values[i]);
         }
@@ -95,31 +97,6 @@ void PassHistogram::add(int channel,
     for (std::size_t i = 4 * part; i < size; ++i) {
         values_[static_cast<std::size_t>(places[i])] += values[i];
     }
-}
-
-// A little wider than the axis, whose ends round.
-PassHistogram::LengthRange PassHistogram::counted_lengths() const {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    if (gate_ != GateShape::Box) return {-kInfinity, kInfinity};
-    constexpr double kMargin = 1e-6;  // of a bin
-    return {axis_.opl_start_m - kMargin * axis_.bin_width_m,
-            axis_.opl_end_m() + kMargin * axis_.bin_width_m};
-}
-
-bool PassHistogram::lets_through(double opl_m) const {
-    int bin = 0;
-    return gate_weight(opl_m, bin) > 1e-17;  // a Gaussian never ends, sums of doubles do
-}
-
-double PassHistogram::gate_weight(double opl_m, int& bin) const {
-    if (gate_ == GateShape::Box) {
-        const std::optional<int> found = axis_.bin_of(opl_m);
-        bin = found.value_or(0);
-        return found ? 1.0 : 0.0;
-    }
-    const double offset = (opl_m - axis_.bin_center_m(0)) / axis_.bin_width_m;
-    if (gate_ == GateShape::Tent) return std::max(0.0, 1.0 - std::abs(offset));
-    return std::exp(-0.5 * offset * offset);
 }
 
 }  // namespace renderer

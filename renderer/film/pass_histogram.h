@@ -64,17 +64,8 @@ class PassHistogram {
     void add(int channel, const PathExtent& path, double value);
     /// Adds a contribution that is already weighted by the gate to a bin.
     void add_to_bin(int channel, int bin, double velocity_m_per_s, double value);
-    /// Whether a path of this length counts at all.
-    bool admits(double opl_m) const {
-        int bin = 0;
-        return gate_weight(opl_m, bin) > 0.0;
-    }
-    /// Path lengths outside this range do not count; some inside it may not either.
-    struct LengthRange {
-        double begin_m;
-        double end_m;
-    };
-    LengthRange counted_lengths() const;
+    /// Path lengths that it does not admit count nowhere.
+    const TimeGate& gate() const { return gate_; }
     /// Adds many contributions; those of 0 are left out.
     ///
     /// opl_m, values   one entry per path, at most kMaxAtOnce
@@ -87,8 +78,6 @@ class PassHistogram {
     bool resolves_velocity() const { return velocity_.has_value(); }
     /// What was collected by velocity; only if resolves_velocity().
     PassVelocityHistogram& velocity() { return *velocity_; }
-    /// Whether a path of this length may count.
-    bool lets_through(double opl_m) const;
 
     /// Hands over what was collected and clears it, for a range that holds all touched bins: first
     /// `visit_values(channel * num_bins + first bin, values)` for every channel, then
@@ -117,11 +106,8 @@ class PassHistogram {
     std::uint64_t num_non_finite() const { return num_non_finite_; }
 
  private:
-    /// Bin and weight of a path length; weight 0 when it lies outside.
-    double gate_weight(double opl_m, int& bin) const;
-
     core::TimeAxis axis_;
-    GateShape gate_;
+    TimeGate gate_;               ///< of all bins
     std::vector<double> values_;  ///< [channel][bin], and one for what lies outside the axis
     int first_touched_;
     int last_touched_ = -1;

@@ -30,7 +30,7 @@ struct PathExtent {
     }
 };
 
-/// A bin or a shaped gate: a weight of the path length with peak 1.
+/// A bin, a shaped gate or all bins together: a weight of the path length with peak 1.
 struct TimeGate {
     double start_m = 0.0;
     double width_m = 0.0;
@@ -39,11 +39,16 @@ struct TimeGate {
     static TimeGate of_bin(const core::TimeAxis& axis, int bin, GateShape shape) {
         return {axis.bin_begin_m(bin), axis.bin_width_m, shape};
     }
+    /// shape   of an axis with one bin
+    static TimeGate of_axis(const core::TimeAxis& axis, GateShape shape) {
+        if (axis.num_bins == 1) return of_bin(axis, 0, shape);
+        return {axis.opl_start_m, axis.opl_end_m() - axis.opl_start_m, GateShape::Box};
+    }
 
     bool operator==(const TimeGate&) const = default;
 
     double weight(double opl_m) const {
-        if (shape == GateShape::Box) return opl_m >= begin_m() && opl_m < end_m() ? 1.0 : 0.0;
+        if (shape == GateShape::Box) return admits(opl_m) ? 1.0 : 0.0;
         const double offset = (opl_m - start_m) / width_m - 0.5;
         if (shape == GateShape::Tent) return std::max(0.0, 1.0 - std::abs(offset));
         return std::exp(-0.5 * offset * offset);
@@ -52,6 +57,7 @@ struct TimeGate {
     /// The lengths of positive weight; a Gaussian is cut off where it is below rounding.
     double begin_m() const { return start_m - overhang() * width_m; }
     double end_m() const { return start_m + (1.0 + overhang()) * width_m; }
+    bool admits(double opl_m) const { return opl_m >= begin_m() && opl_m < end_m(); }
 
  private:
     double overhang() const {

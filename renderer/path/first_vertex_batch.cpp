@@ -244,11 +244,13 @@ void FirstVertexBatch::keep_useful() {
     keep_if([this](int i) { return !(contribution_[i] <= 0.0); });
 }
 
-double FirstVertexBatch::leave_out_other_lengths(const PassHistogram::LengthRange& counted) {
+double FirstVertexBatch::leave_out_other_lengths(const TimeGate& gate) {
+    const double begin_m = gate.begin_m();
+    const double end_m = gate.end_m();
     double all = 0.0;
     double inside = 0.0;
     for (int i = 0; i < count_; ++i) {
-        const bool counts = opl_m_[i] >= counted.begin_m && opl_m_[i] < counted.end_m;
+        const bool counts = opl_m_[i] >= begin_m && opl_m_[i] < end_m;
         all += contribution_[i];
         contribution_[i] = counts ? contribution_[i] : 0.0;
         inside += contribution_[i];

@@ -121,10 +121,10 @@ class FirstVertexBatch {
     void keep_seen();
     /// Drops vertices whose own contribution is zero.
     void keep_useful();
-    /// Sets contributions of path lengths that do not count to 0.
+    /// Sets contributions of path lengths that the gate does not admit to 0.
     ///
     /// returns   the share of all contributions that count; 0 when there are none
-    double leave_out_other_lengths(const PassHistogram::LengthRange& counted);
+    double leave_out_other_lengths(const TimeGate& gate);
     /// Drops vertices by systematic sampling in their order (source [Madow1949]). Those that
     /// contribute at least a step are kept; of the others as many as have steps in their sum, each
     /// of which then contributes a step.

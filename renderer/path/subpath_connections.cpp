@@ -63,7 +63,8 @@ SubpathConnections::SubpathConnections(const Scene& scene,
       orders_(orders),
       rng_(rng),
       resolves_velocity_(histogram.resolves_velocity()),
-      counted_(histogram.counted_lengths()),
+      begin_m_(histogram.gate().begin_m()),
+      end_m_(histogram.gate().end_m()),
       waiting_(waiting),
       next_walk_(static_cast<int>(rng.uniform() * subpaths.num_walks())) {
     vertices_.reserve(kMaxVertices);
@@ -109,8 +110,8 @@ void SubpathConnections::connect_range(const PathVertex& vertex,
         candidates_.subpath_vertex[n] = static_cast<std::uint32_t>(begin + i);
         candidates_.first_vertex[n] = first;
         const auto counts = static_cast<unsigned>(connected.value[i] > 0.0) &
-                            static_cast<unsigned>(opl_m >= counted_.begin_m) &
-                            static_cast<unsigned>(opl_m < counted_.end_m);
+                            static_cast<unsigned>(opl_m >= begin_m_) &
+                            static_cast<unsigned>(opl_m < end_m_);
         n += counts;
     }
     num_candidates_ = n;

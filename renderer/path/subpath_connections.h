@@ -118,7 +118,8 @@ class SubpathConnections {
     Orders orders_;
     core::Rng& rng_;
     bool resolves_velocity_;
-    PassHistogram::LengthRange counted_;
+    double begin_m_;  ///< of lengths that the gate admits
+    double end_m_;
     WaitingConnections& waiting_;
     int next_walk_;
 

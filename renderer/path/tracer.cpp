@@ -87,7 +87,7 @@ void PairWalk::trace_walks(int num_area, int num_directions, double weight) {
 void PairWalk::finish_first_vertices(double weight) {
     evaluate_first_vertices(weight);
     weigh_first_vertices();
-    const double counted = first_.leave_out_other_lengths(histogram_.counted_lengths());
+    const double counted = first_.leave_out_other_lengths(histogram_.gate());
     continued_.clear();
     if (tracer_.max_order_ > 3) {
         draw_continued(tracer_.by_order_ ? 0.0 : kStepOfContinued * counted);

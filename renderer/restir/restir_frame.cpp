@@ -144,12 +144,6 @@ bool is_unoccluded(const ReservoirDomain& from,
 
 }  // namespace
 
-TimeGate ReservoirBins::lengths() const {
-    if (axes_.time.num_bins == 1) return TimeGate::of_bin(axes_.time, 0, shape_);
-    return {
-        axes_.time.opl_start_m, axes_.time.opl_end_m() - axes_.time.opl_start_m, GateShape::Box};
-}
-
 std::optional<std::size_t> ReservoirBins::bin_of(const PathExtent& path) const {
     // A shaped gate reaches beyond its bin.
     const auto time = axes_.time.num_bins == 1 ? 0 : axes_.time.bin_of(path.opl_m);

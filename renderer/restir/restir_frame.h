@@ -108,7 +108,7 @@ class ReservoirBins {
     }
 
     /// The gate of all reservoirs together.
-    TimeGate lengths() const;
+    TimeGate lengths() const { return TimeGate::of_axis(axes_.time, shape_); }
     /// The bin of a path; nothing when its length lies outside.
     std::optional<std::size_t> bin_of(const PathExtent& path) const;
     /// The gate of a bin; not for the one outside the velocity axis.

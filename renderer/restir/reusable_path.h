@@ -3,6 +3,7 @@
 
 #include "renderer/path/path_vertex.h"
 #include "renderer/path/surface_walk.h"
+#include "renderer/settings/estimators.h"
 
 #include <array>
 #include <cstdint>
@@ -15,7 +16,8 @@ namespace renderer {
 ///
 /// The first one is the reconnection vertex: it moves when the path is reused; the others stay.
 struct ReusablePath {
-    static constexpr int kMaxVertices = kMaxRestirBounces - 1;  // a camera's first is seen
+    static constexpr int kMaxVertices =
+        traits_of(Estimator::Restir).max_bounces - 1;  // a camera's first is seen
 
     int num_vertices = 0;
     std::array<SurfacePoint, kMaxVertices> vertices;

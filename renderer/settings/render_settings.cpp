@@ -13,26 +13,27 @@ void validate(const RenderSettings& settings, const std::string& where) {
                           "found beside target_error or seconds",
                           "must stand instead of them");
     }
-    if (settings.method == Estimator::ThirdBounce) {
-        core::require(settings.max_bounces <= 3,
-                      where + ".max_bounces",
-                      fmt::format("{} for method third_bounce", settings.max_bounces),
-                      "at most 3; method auto adds paths for higher orders");
-        core::require(settings.gate == GateShape::Box,
-                      where + ".gate",
-                      fmt::format("{} for method third_bounce", core::enum_name(settings.gate)),
-                      "box; methods auto and path know the others");
-    }
-    if (settings.method == Estimator::Restir) {
-        core::require(settings.max_bounces <= kMaxRestirBounces,
-                      where + ".max_bounces",
-                      fmt::format("{} for method restir", settings.max_bounces),
-                      fmt::format("at most {}", kMaxRestirBounces));
-        core::require(!settings.by_order,
-                      where + ".by_order",
-                      "true for method restir, whose reservoirs hold paths of all orders",
-                      "false; method path tells orders apart");
-    }
+    const EstimatorTraits& method = traits_of(settings.method);
+    const auto require = [&](bool can, const char* key, const std::string& found, auto allowed) {
+        core::require(
+            can, where + "." + key, fmt::format("{} for method {}", found, method.name), allowed);
+    };
+    require(settings.max_bounces <= method.max_bounces,
+            "max_bounces",
+            fmt::format("{}", settings.max_bounces),
+            fmt::format("at most {}, or the method {}",
+                        method.max_bounces,
+                        estimators_that([&](const EstimatorTraits& other) {
+                            return other.max_bounces >= settings.max_bounces;
+                        })));
+    require(settings.gate == GateShape::Box || method.renders_shaped_gates,
+            "gate",
+            std::string(core::enum_name(settings.gate)),
+            "box, or the method " + estimators_that(&EstimatorTraits::renders_shaped_gates));
+    require(!settings.by_order || method.tells_orders_apart,
+            "by_order",
+            "true",
+            "false, or the method " + estimators_that(&EstimatorTraits::tells_orders_apart));
 }
 
 }  // namespace renderer

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/core/settings.h"
+#include "renderer/settings/estimators.h"
 #include "renderer/settings/restir_settings.h"
 
 #include <cstdint>
@@ -9,12 +10,6 @@
 #include <string>
 
 namespace renderer {
-
-/// Which estimator computes the transient. Adding one: a name here, a case in render(), one .cpp.
-enum class Estimator { Auto, Path, ThirdBounce, Ellipsoidal, Restir };
-
-/// Reservoirs store paths of up to this many bounces.
-inline constexpr int kMaxRestirBounces = 9;
 
 /// Shape of the time gate of a one-bin axis; peak 1.
 enum class GateShape { Box, Tent, Gaussian };
@@ -97,11 +92,6 @@ void validate(const RenderSettings& settings, const std::string& where);
 
 }  // namespace renderer
 
-template <>
-struct core::EnumNames<renderer::Estimator> {
-    static constexpr auto value = names_from_zero<renderer::Estimator>(
-        "auto", "path", "third_bounce", "ellipsoidal", "restir");
-};
 template <>
 struct core::EnumNames<renderer::GateShape> {
     static constexpr auto value = names_from_zero<renderer::GateShape>("box", "tent", "gaussian");

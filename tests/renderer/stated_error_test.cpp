@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Errors that renders state of themselves, and that they are asked to reach.
+#include "renderer/bounce_truncation.h"
 #include "renderer/core/random.h"
 #include "renderer/film/stopping_rule.h"
 #include "renderer/frame_sequence.h"

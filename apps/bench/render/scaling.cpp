@@ -51,7 +51,7 @@ Figures measure(Estimator method, const Sizes& sizes) {
     description.render.method = method;
     description.render.max_bounces = sizes.bounces;
     description.render.samples = 256;
-    if (method == Estimator::ThirdBounce) description.render.target_error = 0.02;
+    if (renderer::traits_of(method).is_deterministic) description.render.target_error = 0.02;
     const core::Scan scan = renderer::make_scan(description);
     const renderer::Scene scene({{sheet(sizes.cells)}, {}}, scan, {});
     const core::ThreadLimit limit(sizes.threads);

@@ -106,8 +106,7 @@ core::Json run_method(const SequenceCase& sequence,
                       int num_seeds,
                       const std::array<SequenceFrames, 2>& references) {
     SequenceSetup setup(sequence, method.overrides);
-    // Integrated frames are the same for every seed.
-    if (setup.description.render.method == renderer::Estimator::ThirdBounce) num_seeds = 1;
+    if (renderer::traits_of(setup.description.render.method).is_deterministic) num_seeds = 1;
     SequenceErrors errors(static_cast<std::size_t>(sequence.num_frames));
     renderer::RestirCounts counts;
     double seconds_per_frame = 0.0;

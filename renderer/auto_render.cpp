@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/auto_render.h"
+
+#include "renderer/bounce_truncation.h"
+#include "renderer/estimators.h"
+#include "renderer/path_render.h"
+#include "renderer/smoothed_render.h"
+#include "renderer/third_bounce/third_bounce.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace renderer {
+namespace {
+
+// Of the time, where the integrator and paths share it: the former converges faster.
+constexpr double kIntegratorsTime = 0.25;
+
+/// How a render that integrates third bounces goes about it.
+struct Plan {
+    bool traces = false;    ///< paths, beside the integrator
+    bool averages = false;  ///< what paths give over neighbours
+    double left_out = 0.0;  ///< relative L2 over all of H of orders that are not computed
+};
+
+bool can_integrate(const RenderTask& task) {
+    return task.scan.has_wall() && !task.axes.velocity && task.settings.max_bounces >= 3 &&
+           task.settings.gate == GateShape::Box && surfaces_of(task.scene).integrable;
+}
+
+// Where paths give orders from 4 on alone, which vary slowly over wall points and bins, they are
+// averaged if an error allows it.
+bool may_average(const RenderSettings& settings, const Surfaces& surfaces) {
+    return settings.target_error && !settings.by_order && !settings.variance &&
+           !surfaces.narrow_lobes;
+}
+
+// Orders that are far below the error asked for need not be computed. What is left out counts as
+// part of the error.
+std::optional<LeftOutOrders> leave_out_orders(RenderTask& task) {
+    constexpr double kFractionOfTarget = 0.5;
+    RenderSettings& settings = task.settings;
+    if (!settings.target_error || settings.by_order || settings.max_bounces <= 3) return {};
+    task.progress.update(0.0, "trial runs for the orders of bounces");
+    const BounceTruncation orders =
+        find_bounce_truncation(task, kFractionOfTarget * *settings.target_error);
+    if (orders.last == settings.max_bounces) return {};
+    const LeftOutOrders left_out{orders.last + 1, settings.max_bounces, orders.left_out};
+    settings.max_bounces = orders.last;
+    return left_out;
+}
+
+// Beside paths, the integrator gets half of the error that may be left or a quarter of the time;
+// more of the error where averages over neighbours make paths cheap.
+RenderSettings settings_of_integrator(RenderSettings settings, const Plan& plan) {
+    constexpr double kErrorBesidePaths = 0.5;
+    constexpr double kErrorBesideAverages = 0.7;
+    if (auto& target = settings.target_error) {
+        const double allowed =
+            std::sqrt(std::max(0.0, std::pow(*target, 2) - plan.left_out * plan.left_out));
+        const double fraction = plan.averages ? kErrorBesideAverages : kErrorBesidePaths;
+        target = plan.traces ? fraction * allowed : allowed;
+    }
+    if (settings.seconds && plan.traces) *settings.seconds *= kIntegratorsTime;
+    return settings;
+}
+
+RenderSettings settings_of_paths(RenderSettings settings, double seconds_of_integrator) {
+    if (auto& seconds = settings.seconds) {
+        seconds = std::max((1.0 - kIntegratorsTime) * *seconds, *seconds - seconds_of_integrator);
+    }
+    return settings;
+}
+
+std::vector<OrderSource> sources_of_third_bounces(const Surfaces& surfaces) {
+    if (!surfaces.narrow_lobes) return {{3, 3, Estimator::ThirdBounce, "all"}};
+    return {{3, 3, Estimator::ThirdBounce, "all but narrow glossy lobes and dielectrics"},
+            {3, 3, Estimator::Path, "narrow glossy lobes and dielectrics"}};
+}
+
+void add_third_bounces(const ThirdBounce& third, const Plan& plan, RenderResult& result) {
+    result.capture.transient += third.transient;
+    if (!result.capture.by_order.empty()) result.capture.by_order[2] += third.transient;
+    result.element_tolerance = third.element_tolerance;
+    if (!third.estimated_error) {
+        result.estimated_error.reset();
+    } else if (!plan.traces) {
+        result.estimated_error = std::hypot(*third.estimated_error, plan.left_out);
+    }
+    result.num_rays += third.num_rays;
+    result.seconds += third.seconds;
+    result.interrupted = result.interrupted || third.interrupted;
+}
+
+RenderResult integrate_and_trace(const RenderTask& task, const Plan& plan) {
+    const double done = plan.traces ? 0.1 : 1.0;
+    const ThirdBounce third = integrate_third_bounce(task.scene,
+                                                     task.scan.wall(),
+                                                     task.axes.time,
+                                                     settings_of_integrator(task.settings, plan),
+                                                     task.progress.part(0.0, done));
+    const core::Progress progress = task.progress.part(done, 1.0);
+    const RenderTask rest{task.scene,
+                          task.scan,
+                          task.axes,
+                          settings_of_paths(task.settings, third.seconds),
+                          progress};
+    const PrecomputedPart precomputed{&third.transient, third.squared_error, plan.left_out};
+    RenderResult result = plan.traces ? trace_paths(rest,
+                                                    ThirdBounceScope::NotIntegrable,
+                                                    precomputed,
+                                                    plan.averages ? render_smoothed : render_passes)
+                                      : render_passes(rest, {nullptr, precomputed});
+    add_third_bounces(third, plan, result);
+    const auto sources = sources_of_third_bounces(surfaces_of(task.scene));
+    result.sources.insert(result.sources.begin(), sources.begin(), sources.end());
+    return result;
+}
+
+}  // namespace
+
+RenderResult render_auto(const RenderTask& whole) {
+    RenderTask task = whole;
+    const auto left_out = leave_out_orders(task);
+    Plan plan;
+    if (left_out) plan.left_out = left_out->error;
+    const Surfaces surfaces = surfaces_of(task.scene);
+    plan.traces = surfaces.narrow_lobes || task.settings.max_bounces > 3;
+    plan.averages = plan.traces && may_average(task.settings, surfaces);
+    RenderResult result =
+        can_integrate(task)
+            ? integrate_and_trace(task, plan)
+            : trace_paths(
+                  task, ThirdBounceScope::All, {nullptr, 0.0, plan.left_out}, render_passes);
+    result.left_out = left_out;
+    return result;
+}
+
+RenderResult render_third_bounce(const RenderTask& task) {
+    return can_integrate(task) ? integrate_and_trace(task, {}) : render_passes(task, {});
+}
+
+}  // namespace renderer
