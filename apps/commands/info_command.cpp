@@ -12,7 +12,7 @@
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
 #include "nlos/layouts/layout_guess.h"
-#include "nlos/pictures/film.h"
+#include "nlos/pictures/animation.h"
 #include "nlos/pictures/picture.h"
 #include "nlos/pictures/pictures.h"
 #include "renderer/core/capture/capture.h"
@@ -41,7 +41,7 @@ bool is_video(const std::string& path) {
 
 /// Every frame as a PNG file.
 std::vector<std::string> draw_frames(const core::Capture& capture, const core::Progress& progress) {
-    const std::vector<nlos::ImagePanel> panels = nlos::film_panels(capture, kMostFrames);
+    const std::vector<nlos::ImagePanel> panels = nlos::animation_panels(capture, kMostFrames);
     std::vector<std::string> frames;
     core::parallel_in_order<std::string>(
         panels.size(),
@@ -84,7 +84,7 @@ void check_film_path(const std::string& path) {
 /// Films the light of a capture: bin by bin, or a sequence frame by frame.
 ///
 /// path     .png, which is animated, or .mp4
-/// throws   core::Error as film_panels() does, core::Failure when ffmpeg fails
+/// throws   core::Error as animation_panels() does, core::Failure when ffmpeg fails
 void write_film(const std::string& path,
                 const core::Capture& capture,
                 const core::Progress& progress) {

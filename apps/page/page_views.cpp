@@ -113,7 +113,7 @@ core::Json views_json(const PageViews& views, int halvings, PageArrays& arrays) 
                     {"colours", colours_json()},
                     {"results", core::Json::array()},
                     {"best", views.best + (views.truth ? 1 : 0)},
-                    {"films", core::Json::array()}};
+                    {"animations", core::Json::array()}};
     if (views.scan) {
         const auto add = [&](const core::WallPoints& points) {
             return add_points(arrays, points.positions, wall.frame_from_world);
@@ -135,9 +135,9 @@ core::Json views_json(const PageViews& views, int halvings, PageArrays& arrays) 
         json["results"].push_back(
             result_json(result, scales, wall.frame_from_world, halvings, arrays));
     }
-    for (FilmView film : views.films) {
-        for (int i = 0; i < halvings; ++i) film = halved(film);
-        json["films"].push_back(film_json(film, wall.frame_from_world, arrays));
+    for (AnimationView animation : views.animations) {
+        for (int i = 0; i < halvings; ++i) animation = halved(animation);
+        json["animations"].push_back(animation_json(animation, wall.frame_from_world, arrays));
     }
     return json;
 }

@@ -14,8 +14,8 @@
 
 namespace apps {
 
-/// A capture as a film: the light of every cell - wall point or pixel - by time or by frame.
-struct FilmView {
+/// A capture as an animation: the light of every cell - wall point or pixel - by time or by frame.
+struct AnimationView {
     enum class Kind { Wall, Camera, List };
 
     std::string name;    ///< of the file
@@ -40,17 +40,17 @@ struct FilmView {
 
 /// A sequence by its frames, all bins of each together; everything else by path length, from the
 /// first to the last bin with light. Of exhaustive scans: the middle illumination point.
-FilmView film_view(const core::Capture& capture, const std::string& name);
+AnimationView animation_view(const core::Capture& capture, const std::string& name);
 
-/// The film with pairs of bins as one; of frames: as it is.
-FilmView halved(const FilmView& film);
+/// The animation with pairs of bins as one; of frames: as it is.
+AnimationView halved(const AnimationView& animation);
 
-/// What the page's script reads of a film.
+/// What the page's script reads of an animation.
 ///
 /// frame_from_world   of the positions
-core::Json film_json(const FilmView& film,
-                     const core::Transform& frame_from_world,
-                     PageArrays& arrays);
+core::Json animation_json(const AnimationView& animation,
+                          const core::Transform& frame_from_world,
+                          PageArrays& arrays);
 
 /// The hidden scene as it is.
 struct TruthView {
@@ -68,20 +68,20 @@ TruthView truth_view(const std::string& scene_path, std::vector<ResultView>& res
 /// What the interactive views of a page are about.
 struct PageViews {
     std::vector<ResultView> results;
-    std::vector<FilmView> films;
+    std::vector<AnimationView> animations;
     std::optional<core::WallScan> scan;  ///< whose wall points are shown
     std::optional<TruthView> truth;
     std::size_t best = 0;  ///< of the results, to be shown first
 
     bool has_space() const { return !results.empty() || truth || scan; }
-    bool empty() const { return !has_space() && films.empty(); }
+    bool empty() const { return !has_space() && animations.empty(); }
 };
 
 /// Script elements with all data of the views, and with the scripts that show them.
 ///
 /// The data have 8 bits per voxel and per bin, 16 per coordinate and per value of a map, and are
-/// compressed. Where they would be larger than the limit, all volumes and films are halved along
-/// their longest axis until they are not, and the views say so.
+/// compressed. Where they would be larger than the limit, all volumes and animations are halved
+/// along their longest axis until they are not, and the views say so.
 ///
 /// limit_bytes   of the data; the scripts are another 0.9 MB
 /// returns       nothing for no views

@@ -60,7 +60,7 @@ std::string contents_text(const ResultsFolder& results) {
 std::string lead_text(const ResultsFolder& results) {
     const PageViews& views = results.views;
     std::string text;
-    if (!views.films.empty()) text = with_article(views.films.front().detail);
+    if (!views.animations.empty()) text = with_article(views.animations.front().detail);
     if (!views.results.empty()) {
         text += (text.empty() ? "A hidden scene" : "") +
                 fmt::format(", reconstructed by {}", methods_text(views));

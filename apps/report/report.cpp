@@ -125,13 +125,13 @@ std::string reconstructions_html(const std::vector<ResultCard>& volumes) {
     return html;
 }
 
-/// Captures, each with its film.
+/// Captures, each with its animation.
 std::string captures_html(const std::vector<ResultCard>& captures) {
     std::string html;
     for (std::size_t i = 0; i < captures.size(); ++i) {
         html += card_html(
             captures[i],
-            view_html("film", fmt::format(" data-film=\"{}\"", i)),
+            view_html("animation", fmt::format(" data-animation=\"{}\"", i)),
             folded_html("Streak image, light over the wall and mean transient as a picture",
                         picture_html(captures[i], "Streak image")));
     }

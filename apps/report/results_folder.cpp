@@ -78,7 +78,7 @@ void read_measurement(const fs::path& path,
     }
     const core::Capture capture = nlos::read_capture(path.string(), settings);
     results.captures.push_back(capture_card(path.string(), capture));
-    results.views.films.push_back(film_view(capture, name));
+    results.views.animations.push_back(animation_view(capture, name));
     const auto* points = capture.scan.as<core::WallScan>();
     if (!results.views.scan && points != nullptr) results.views.scan = *points;
 }

@@ -48,7 +48,7 @@ struct ResultsFolder {
     std::vector<Figure> figures;  ///< but for those that belong to a file shown
     std::vector<JsonDocument> documents;
     std::vector<Fact> unreadable;  ///< file and what is wrong with it
-    PageViews views;               ///< a film per capture and a result per volume, in their order
+    PageViews views;  ///< an animation per capture and a result per volume, in their order
 
     bool empty() const {
         return !dataset && scores.empty() && captures.empty() && volumes.empty() && fits.empty() &&

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/canvas/canvas.h"
-#include "nlos/pictures/film.h"
+#include "nlos/pictures/animation.h"
 #include "nlos/pictures/image_layout.h"
 #include "nlos/pictures/light_scale.h"
 #include "nlos/pictures/pictures.h"

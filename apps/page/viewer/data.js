@@ -21,7 +21,7 @@ viewer.readMetadata = function () {
   }
   viewer.require(metadata && metadata.version === kVersion, 'The page\u2019s data are of an unknown version.');
   viewer.require(
-    Array.isArray(metadata.results) && Array.isArray(metadata.films),
+    Array.isArray(metadata.results) && Array.isArray(metadata.animations),
     'The page\u2019s description of its data lacks its results or captures.',
   );
   return metadata;

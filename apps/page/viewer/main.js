@@ -5,7 +5,7 @@
 //   space    result (check box, with data-index), colour, point-size, volume-of, volume-mode,
 //            threshold, wall, scan-points, truth, axes, view-wall, view-side, view-top, reset, save;
 //            canvas: scene; bars: points-bar, volume-bar
-//   film     play, speed, value-scale, stretch, all-time, whole-record, bin (slider);
+//   animation     play, speed, value-scale, stretch, all-time, whole-record, bin (slider);
 //            canvases: picture, histogram, colour-bar
 //   slices   result, value-scale, brightest, slider-x, slider-y, slider-z;
 //            canvases: slice-xy, slice-zy, slice-xz, colour-bar
@@ -17,7 +17,7 @@
 //   all      data-started="true" once running, data-failed="true" when nothing can be shown
 //   space    data-ready, data-results ("1,2"), data-colour, data-mode (none, maximum, surface),
 //            data-volume-of, data-threshold (per cent), data-camera (wall, side, top, free)
-//   film     data-bin, data-cell, data-value-scale, data-all-time, data-playing
+//   animation     data-bin, data-cell, data-value-scale, data-all-time, data-playing
 //   slices   data-result, data-ix, data-iy, data-iz, data-value-scale
 //   matrix   data-ready
 //   pair     data-left, data-right (indices of results), data-map, data-position (per cent)

@@ -145,11 +145,11 @@ core::Capture lit_capture(core::ScanPattern pattern, int num_bins = 5) {
     return capture;
 }
 
-TEST(Page, FilmsShowEachPointsLightInTheWallsOrder) {
+TEST(Page, AnimationsShowEachPointsLightInTheWallsOrder) {
     const core::Capture capture = lit_capture(core::ScanPattern::Confocal);
-    const FilmView film = film_view(capture, "a.h5");
+    const AnimationView animation = animation_view(capture, "a.h5");
     PageArrays arrays;
-    const core::Json json = film_json(film, core::Transform::Identity(), arrays);
+    const core::Json json = animation_json(animation, core::Transform::Identity(), arrays);
     ASSERT_EQ(json["kind"], "wall");
     const std::vector<double> values = values_of(json["values"], arrays);
     const nlos::WallGrid grid = *nlos::derive_wall_frame(capture.scan.wall()).grid;
@@ -168,56 +168,59 @@ TEST(Page, FilmsShowEachPointsLightInTheWallsOrder) {
     }
 }
 
-TEST(Page, FilmsOfExhaustiveScansAreOfTheMiddleIlluminationPoint) {
+TEST(Page, AnimationsOfExhaustiveScansAreOfTheMiddleIlluminationPoint) {
     const core::Capture capture = lit_capture(core::ScanPattern::Exhaustive);
-    const FilmView film = film_view(capture, "a.h5");
+    const AnimationView animation = animation_view(capture, "a.h5");
     const std::size_t middle = capture.scan.wall().illumination.size() / 2;
     const nlos::WallGrid grid = *nlos::derive_wall_frame(capture.scan.wall()).grid;
     const std::size_t pair = middle * capture.scan.wall().sensing.size() + grid.point(0, 0);
-    EXPECT_NEAR(film.coding.decode(film.codes[0]) / double{capture.transient.histogram(pair)[1]},
-                1.0,
-                0.01);
-    EXPECT_NE(film.detail.find("lit at the middle one"), std::string::npos);
+    EXPECT_NEAR(
+        animation.coding.decode(animation.codes[0]) / double{capture.transient.histogram(pair)[1]},
+        1.0,
+        0.01);
+    EXPECT_NE(animation.detail.find("lit at the middle one"), std::string::npos);
 }
 
-TEST(Page, FilmsOfScansWithMoreLitThanSensingPointsAreOfTheLitOnes) {
+TEST(Page, AnimationsOfScansWithMoreLitThanSensingPointsAreOfTheLitOnes) {
     core::Capture capture = lit_capture(core::ScanPattern::Exhaustive);
     std::swap(capture.scan.wall().sensing, capture.scan.wall().illumination);
     const nlos::WallGrid grid = *nlos::derive_wall_frame(capture.scan.wall()).grid;
     const std::size_t num_sensing = capture.scan.wall().sensing.size();
     const std::size_t pair = grid.point(0, 0) * num_sensing + num_sensing / 2;
     const auto light = double{capture.transient.histogram(pair)[1]};
-    FilmView film = film_view(capture, "a.h5");
-    EXPECT_NEAR(film.coding.decode(film.codes[0]) / light, 1.0, 0.01);
-    EXPECT_NE(film.detail.find("sensed at the middle one"), std::string::npos);
+    AnimationView animation = animation_view(capture, "a.h5");
+    EXPECT_NEAR(animation.coding.decode(animation.codes[0]) / light, 1.0, 0.01);
+    EXPECT_NE(animation.detail.find("sensed at the middle one"), std::string::npos);
     capture.scan.wall().illumination.grid.reset();
-    film = film_view(capture, "a.h5");
-    EXPECT_EQ(film.positions.size(), capture.scan.wall().illumination.size());
+    animation = animation_view(capture, "a.h5");
+    EXPECT_EQ(animation.positions.size(), capture.scan.wall().illumination.size());
 }
 
-TEST(Page, HalvedFilmsHoldTheSameLight) {
-    const FilmView film = film_view(lit_capture(core::ScanPattern::Confocal), "a.h5");
-    const FilmView half = halved(film);
-    EXPECT_EQ(half.num_bins, (film.num_bins + 1) / 2);
-    EXPECT_DOUBLE_EQ(half.step_m, 2.0 * film.step_m);
-    EXPECT_DOUBLE_EQ(half.start_m, film.start_m);
-    const auto light_of = [](const FilmView& view) {
+TEST(Page, HalvedAnimationsHoldTheSameLight) {
+    const AnimationView animation =
+        animation_view(lit_capture(core::ScanPattern::Confocal), "a.h5");
+    const AnimationView half = halved(animation);
+    EXPECT_EQ(half.num_bins, (animation.num_bins + 1) / 2);
+    EXPECT_DOUBLE_EQ(half.step_m, 2.0 * animation.step_m);
+    EXPECT_DOUBLE_EQ(half.start_m, animation.start_m);
+    const auto light_of = [](const AnimationView& view) {
         double light = 0.0;
         for (const std::uint8_t code : view.codes) light += view.coding.decode(code);
         return light;
     };
-    EXPECT_NEAR(light_of(half) / light_of(film), 1.0, 0.005);
+    EXPECT_NEAR(light_of(half) / light_of(animation), 1.0, 0.005);
 }
 
-TEST(Page, DarkCapturesHaveDarkFilms) {
+TEST(Page, DarkCapturesHaveDarkAnimations) {
     core::Capture capture = test_support::example_capture(core::ScanPattern::Confocal);
     for (std::size_t pair = 0; pair < capture.transient.num_pairs(); ++pair) {
         for (float& value : capture.transient.histogram(pair)) value = 0.0F;
     }
-    const FilmView film = film_view(capture, "dark.h5");
-    EXPECT_EQ(film.num_bins, capture.transient.num_bins());
-    EXPECT_TRUE(std::all_of(film.codes.begin(), film.codes.end(), [](auto c) { return c == 0; }));
-    EXPECT_LT(film.lit_bins[1], film.num_bins);
+    const AnimationView animation = animation_view(capture, "dark.h5");
+    EXPECT_EQ(animation.num_bins, capture.transient.num_bins());
+    EXPECT_TRUE(
+        std::all_of(animation.codes.begin(), animation.codes.end(), [](auto c) { return c == 0; }));
+    EXPECT_LT(animation.lit_bins[1], animation.num_bins);
 }
 
 TEST(Page, HalvedVolumesKeepTheirBrightestVoxels) {
@@ -260,7 +263,8 @@ TEST(Page, MapsOfAResultAreItsDepthsAndTheirErrors) {
 
 TEST(Page, LargeDataAreHalvedUntilTheyFitAndSaySo) {
     PageViews views;
-    views.films.push_back(film_view(lit_capture(core::ScanPattern::Confocal, 500), "a.h5"));
+    views.animations.push_back(
+        animation_view(lit_capture(core::ScanPattern::Confocal, 500), "a.h5"));
     const std::string whole = views_html(views, 1e9);
     EXPECT_EQ(whole.find("to keep the page small"), std::string::npos);
     const std::string small = views_html(views, 1.0);
@@ -270,8 +274,8 @@ TEST(Page, LargeDataAreHalvedUntilTheyFitAndSaySo) {
 
 TEST(Page, NamesCannotEndTheirScript) {
     PageViews views;
-    views.films.push_back(
-        film_view(lit_capture(core::ScanPattern::Confocal), "</script><script>alert(1)"));
+    views.animations.push_back(
+        animation_view(lit_capture(core::ScanPattern::Confocal), "</script><script>alert(1)"));
     const std::string html = views_html(views, 1e9);
     EXPECT_EQ(html.find("</script><script>alert"), std::string::npos);
     EXPECT_NE(html.find("\\u003c/script>\\u003cscript>alert(1)"), std::string::npos);

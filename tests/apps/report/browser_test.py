@@ -242,7 +242,7 @@ def use_space(browser: Browser, view) -> None:
     browser.wait(lambda: view.get_attribute("data-results") != shown, "other results")
 
 
-def use_film(browser: Browser, view) -> None:
+def use_animation(browser: Browser, view) -> None:
     picture = browser.control(view, "picture")
     slider = browser.control(view, "bin")
     slider.send_keys(Keys.HOME)
@@ -297,7 +297,7 @@ def use_table(browser: Browser) -> None:
 def use_demo(browser: Browser, page: Path) -> None:
     browser.open(page)
     use_space(browser, browser.views("space")[0])
-    use_film(browser, browser.views("film")[0])
+    use_animation(browser, browser.views("animation")[0])
     use_slices(browser, browser.views("slices")[0])
     use_pair(browser, browser.views("pair")[0])
     use_table(browser)
@@ -349,8 +349,8 @@ def main() -> int:
                          pages.list_of_points, pages.hostile):
                 page = make()
                 browser.open(page)
-                for film in browser.views("film"):
-                    use_film(browser, film)
+                for animation in browser.views("animation"):
+                    use_animation(browser, animation)
                 browser.expect_quiet(page)
                 check(browser.driver.title != "hurt", "a name was run")
                 if keep:

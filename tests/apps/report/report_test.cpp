@@ -289,7 +289,7 @@ TEST(Report, FilesAreShownWithoutTheirFolder) {
     const ResultsFolder results =
         read_result_files({folder.file("capture.h5"), folder.file("volume_bp.h5")});
     EXPECT_EQ(results.name, "capture.h5, volume_bp.h5");
-    EXPECT_EQ(results.views.films.size(), 1U);
+    EXPECT_EQ(results.views.animations.size(), 1U);
     EXPECT_EQ(results.views.results.size(), 1U);
     EXPECT_TRUE(results.scores.empty());
     for (const std::string name : {"broken.h5", "plot.svg", "none.h5"}) {

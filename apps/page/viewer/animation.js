@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A capture as a film: light over the wall (or a camera's pixels) by path length, and histograms.
+// A capture as an animation: light over the wall (or a camera's pixels) by path length, and histograms.
 
 const kTallest = 460;       // pixels, of the picture
 const kNarrow = 720;        // pixels: below, the histogram stands under the picture
@@ -10,15 +10,15 @@ const kSpeeds = [5, 15, 30, 60];  // bins per second
 const kHints = 'Click the picture to pin a point. With the picture in focus: Left and Right step in time, ' +
   'Home and End go to the ends, Shift with arrows moves the point, Space plays.';
 
-class Film {
+class AnimationView {
   constructor(view, layout, data) {
     this.view = view;
     this.layout = layout;
     this.data = data;
-    this.film = data.film;
+    this.animation = data.animation;
     const isCalm = matchMedia('(prefers-reduced-motion: reduce)').matches;
     this.state = {
-      bin: Math.min(this.film.last_lit, Math.max(this.film.first_lit, data.brightestBin)),
+      bin: Math.min(this.animation.last_lit, Math.max(this.animation.first_lit, data.brightestBin)),
       pinned: data.brightestCell,
       hovered: null,
       kind: 'gamma',
@@ -63,7 +63,7 @@ class Film {
 
   makePictures() {
     this.picture = viewer.createPlot({
-      label: this.film.name,
+      label: this.animation.name,
       control: 'picture',
       focusable: true,
       margins: this.layout.isStrip ? { left: 14 } : {},
@@ -80,8 +80,8 @@ class Film {
   makeScrubber() {
     this.scrubber = viewer.slider(this.data.isFrames ? 'Frame' : 'Time', 'bin', { min: 0, max: 0 }, 0,
       (bin) => this.binWords(bin), (bin) => this.jumpTo(bin));
-    this.scrubber.classList.add('film-scrubber');
-    const { first_lit: first, last_lit: last } = this.film;
+    this.scrubber.classList.add('animation-scrubber');
+    const { first_lit: first, last_lit: last } = this.animation;
     this.whole = first === 0 && last === this.data.bins - 1
       ? null
       : viewer.check('Whole record, with its dark ends', 'whole-record', false, (on) => {
@@ -98,12 +98,12 @@ class Film {
   }
 
   assemble() {
-    const { detail, reduced } = this.film;
+    const { detail, reduced } = this.animation;
     const title = viewer.element('p', { class: 'view-title' }, [detail, reduced].filter(Boolean).join('; '));
     this.readout = viewer.element('p', { class: 'view-readout' });
-    const picture = viewer.element('div', { class: 'film-pane' }, this.picture.canvas, this.bar.element);
-    this.curvePane = viewer.element('div', { class: 'film-pane' }, this.curve.element);
-    this.panes = viewer.element('div', { class: 'film-panes' }, picture, this.curvePane);
+    const picture = viewer.element('div', { class: 'animation-pane' }, this.picture.canvas, this.bar.element);
+    this.curvePane = viewer.element('div', { class: 'animation-pane' }, this.curve.element);
+    this.panes = viewer.element('div', { class: 'animation-panes' }, picture, this.curvePane);
     this.view.body.append(title, this.controls, this.scrubber);
     if (this.whole) this.controls.append(this.whole);
     this.view.body.append(this.panes, this.readout, viewer.element('p', { class: 'view-hint' }, kHints));
@@ -124,7 +124,7 @@ class Film {
 
   /** The bins that the scrubber reaches: those with light, or all. */
   range() {
-    return this.state.isWhole ? [0, this.data.bins - 1] : [this.film.first_lit, this.film.last_lit];
+    return this.state.isWhole ? [0, this.data.bins - 1] : [this.animation.first_lit, this.animation.last_lit];
   }
 
   setRange() {
@@ -145,7 +145,7 @@ class Film {
     this.recolour();
   }
 
-  /** Goes where a hand asks to, which ends the film. */
+  /** Goes where a hand asks to, which ends the animation. */
   jumpTo(bin) {
     this.setPlaying(false);
     this.goTo(bin);
@@ -182,7 +182,7 @@ class Film {
     const high = (isStretched && this.data.largestAt(bin)) || quantity.high;
     const scale = this.scaleOf(quantity.low, high);
     const lookup = viewer.colourValues(quantity.values, scale, 'heat');
-    this.bar.set(scale, 'heat', viewer.titleWithUnit('Light in one ' + this.data.word, this.film.unit));
+    this.bar.set(scale, 'heat', viewer.titleWithUnit('Light in one ' + this.data.word, this.animation.unit));
     const colours = new Uint32Array(cells);
     for (let cell = 0; cell < cells; ++cell) colours[cell] = lookup[quantity.codes[cell * bins + bin]];
     return colours;
@@ -193,7 +193,7 @@ class Film {
     const high = sums[brightestCell];
     const least = sums.reduce((low, sum) => (sum > 0 && sum < low ? sum : low), high);
     const scale = this.scaleOf(Math.max(0.9 * least, kSumSpan * high), high);
-    this.bar.set(scale, 'heat', viewer.titleWithUnit(`Light summed over all ${this.data.word}s`, this.film.unit));
+    this.bar.set(scale, 'heat', viewer.titleWithUnit(`Light summed over all ${this.data.word}s`, this.animation.unit));
     return viewer.colourValues(sums, scale, 'heat');
   }
 
@@ -228,7 +228,7 @@ class Film {
     const value = isAllTime ? this.data.sums[cell] : this.data.value(cell, bin);
     const when = isAllTime ? 'over all time' : `${this.data.isFrames ? 'in' : 'at'} ${this.data.describe(bin)}`;
     this.readout.textContent = `${this.layout.describe(cell)}: ${this.data.valueText(value)} ${when}.`;
-    this.picture.setLabel(`${this.film.name} ${when}. ${this.readout.textContent}`);
+    this.picture.setLabel(`${this.animation.name} ${when}. ${this.readout.textContent}`);
     Object.assign(this.view.root.dataset, { bin, cell, valueScale: kind, allTime: isAllTime });
   }
 
@@ -261,11 +261,11 @@ class Film {
   }
 }
 
-viewer.views.film = async function (view) {
-  const film = view.metadata.films[Number(view.root.dataset.film)];
-  viewer.require(film, 'The page does not hold this capture.');
-  const layout = await viewer.makeFilmLayout(film);
-  const data = await viewer.loadFilm(film, layout.cells);
+viewer.views.animation = async function (view) {
+  const animation = view.metadata.animations[Number(view.root.dataset.animation)];
+  viewer.require(animation, 'The page does not hold this capture.');
+  const layout = await viewer.makeAnimationLayout(animation);
+  const data = await viewer.loadAnimation(animation, layout.cells);
   view.root.dataset.playing = 'false';
-  new Film(view, layout, data);
+  new AnimationView(view, layout, data);
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The numbers of a film: its values by cell and bin, sums, and what its bins mean.
+// The numbers of an animation: its values by cell and bin, sums, and what its bins mean.
 
 /** One pass over all values: the sum of each cell, and the mean over all cells of each bin. */
 function sumUp(codes, values, cells, bins) {
@@ -20,18 +20,18 @@ function sumUp(codes, values, cells, bins) {
 
 const indexOfMaximum = (numbers) => numbers.reduce((best, number, i) => (number > numbers[best] ? i : best), 0);
 
-class FilmData {
-  constructor(film, cells, quantity) {
-    this.film = film;
+class AnimationData {
+  constructor(animation, cells, quantity) {
+    this.animation = animation;
     this.cells = cells;
-    this.bins = film.bins;
+    this.bins = animation.bins;
     this.quantity = quantity;
-    const { perCell, perBin } = sumUp(quantity.codes, quantity.values, cells, film.bins);
+    const { perCell, perBin } = sumUp(quantity.codes, quantity.values, cells, animation.bins);
     this.sums = perCell;
     this.means = perBin;
     this.brightestCell = indexOfMaximum(perCell);
     this.brightestBin = indexOfMaximum(perBin);
-    this.isFrames = film.axis === 'frame';
+    this.isFrames = animation.axis === 'frame';
     this.word = this.isFrames ? 'frame' : 'bin';
   }
 
@@ -51,40 +51,40 @@ class FilmData {
 
   /** Where a bin begins on the axis of time; frames are counted from one, each around its number. */
   edge(bin) {
-    return this.isFrames ? bin + 0.5 : this.film.start + bin * this.film.step;
+    return this.isFrames ? bin + 0.5 : this.animation.start + bin * this.animation.step;
   }
 
   binAt(position) {
-    const bin = this.isFrames ? position - 0.5 : (position - this.film.start) / this.film.step;
+    const bin = this.isFrames ? position - 0.5 : (position - this.animation.start) / this.animation.step;
     return Math.min(this.bins - 1, Math.max(0, Math.floor(bin)));
   }
 
   /** A bin in words, such as `path length 1.234 m` (its middle). */
   describe(bin) {
-    const { labels, axis, start, step } = this.film;
+    const { labels, axis, start, step } = this.animation;
     if (this.isFrames) return (labels && labels[bin]) || `frame ${bin + 1}`;
     const decimals = Math.min(6, Math.max(3, 1 - Math.floor(Math.log10(step))));
     return `${axis} ${viewer.withUnit(viewer.formatFixed(start + (bin + 0.5) * step, decimals), 'm')}`;
   }
 
   axisTitle() {
-    return this.isFrames ? 'frame' : viewer.titleWithUnit(this.film.axis, 'm');
+    return this.isFrames ? 'frame' : viewer.titleWithUnit(this.animation.axis, 'm');
   }
 
   valueText(value) {
-    return viewer.withUnit(viewer.formatNumber(value), this.film.unit);
+    return viewer.withUnit(viewer.formatNumber(value), this.animation.unit);
   }
 }
 
-viewer.loadFilm = async function (film, cells) {
-  const { bins, first_lit: first, last_lit: last } = film;
+viewer.loadAnimation = async function (animation, cells) {
+  const { bins, first_lit: first, last_lit: last } = animation;
   viewer.require(Number.isInteger(bins) && bins > 0, 'The capture has no bins.');
-  viewer.require(film.axis === 'frame' || film.step > 0, 'The capture\u2019s bins have no width.');
+  viewer.require(animation.axis === 'frame' || animation.step > 0, 'The capture\u2019s bins have no width.');
   viewer.require(
     Number.isInteger(first) && Number.isInteger(last) && first >= 0 && first <= last && last < bins,
     'The capture does not say where its light lies.',
   );
-  const quantity = await viewer.loadQuantity(film.values, cells * bins);
-  if (film.whole) quantity.values = quantity.values.map(Math.round);
-  return new FilmData(film, cells, quantity);
+  const quantity = await viewer.loadQuantity(animation.values, cells * bins);
+  if (animation.whole) quantity.values = quantity.values.map(Math.round);
+  return new AnimationData(animation, cells, quantity);
 };

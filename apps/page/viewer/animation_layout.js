@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How the cells of a film lie in its picture: a grid over the wall, a camera's pixels, or a list.
+// How the cells of an animation lie in its picture: a grid over the wall, a camera's pixels, or a list.
 
 const kSample = 200;  // points whose distances from neighbours are looked at
 const { clampIndex } = viewer;
@@ -9,29 +9,29 @@ const { clampIndex } = viewer;
  * element for each cell, cellAt(x, y), centre(cell) as [x, y], neighbour(cell, [right, up]) and
  * describe(cell).
  */
-viewer.makeFilmLayout = async function (film) {
-  viewer.require(viewer.isRange(film.size), 'The capture does not say how large it is.');
-  if (film.kind === 'wall') return wallLayout(film);
-  if (film.kind === 'camera') return cameraLayout(film);
-  viewer.require(film.kind === 'list', 'The capture is of an unknown kind.');
-  return film.positions ? listLayout(film, await viewer.loadPoints(film.positions)) : stripLayout(film);
+viewer.makeAnimationLayout = async function (animation) {
+  viewer.require(viewer.isRange(animation.size), 'The capture does not say how large it is.');
+  if (animation.kind === 'wall') return wallLayout(animation);
+  if (animation.kind === 'camera') return cameraLayout(animation);
+  viewer.require(animation.kind === 'list', 'The capture is of an unknown kind.');
+  return animation.positions ? listLayout(animation, await viewer.loadPoints(animation.positions)) : stripLayout(animation);
 };
 
-function wallLayout(film) {
-  const [w, h] = film.size;
-  viewer.require(viewer.isRange(film.x_m) && viewer.isRange(film.y_m), 'The capture does not say where it lies.');
+function wallLayout(animation) {
+  const [w, h] = animation.size;
+  viewer.require(viewer.isRange(animation.x_m) && viewer.isRange(animation.y_m), 'The capture does not say where it lies.');
   const indexAt = ([low, high], count, value) => clampIndex(Math.floor(((value - low) / (high - low)) * count), count);
   const place = ([low, high], count, index) => low + ((index + 0.5) / count) * (high - low);
-  const centre = (cell) => [place(film.x_m, w, Math.floor(cell / h)), place(film.y_m, h, cell % h)];
+  const centre = (cell) => [place(animation.x_m, w, Math.floor(cell / h)), place(animation.y_m, h, cell % h)];
   return {
     cells: w * h,
-    x: viewer.linearAxis(film.x_m, 'x (m)', true),
-    y: viewer.linearAxis(film.y_m, 'y (m)'),
+    x: viewer.linearAxis(animation.x_m, 'x (m)', true),
+    y: viewer.linearAxis(animation.y_m, 'y (m)'),
     paint: (context, plot, colours) => {
       const bitmap = viewer.makeBitmap(w, h, (column, row) => colours[(w - 1 - column) * h + (h - 1 - row)]);
-      viewer.paintBitmap(context, plot, bitmap, film.x_m, film.y_m);
+      viewer.paintBitmap(context, plot, bitmap, animation.x_m, animation.y_m);
     },
-    cellAt: (x, y) => indexAt(film.x_m, w, x) * h + indexAt(film.y_m, h, y),
+    cellAt: (x, y) => indexAt(animation.x_m, w, x) * h + indexAt(animation.y_m, h, y),
     centre,
     neighbour: (cell, [right, up]) =>
       clampIndex(Math.floor(cell / h) - right, w) * h + clampIndex((cell % h) + up, h),
@@ -57,22 +57,22 @@ function pixelLayout(w, h, titles, describe) {
   };
 }
 
-function cameraLayout(film) {
-  const [w, h] = film.size;
+function cameraLayout(animation) {
+  const [w, h] = animation.size;
   const describe = (cell) => `Pixel in column ${cell % w}, row ${Math.floor(cell / w)}`;
   return pixelLayout(w, h, ['column (pixels)', 'row (pixels)'], describe);
 }
 
 /** A list whose points have no known place: one narrow cell each, side by side. */
-function stripLayout(film) {
-  const count = film.size[0];
+function stripLayout(animation) {
+  const count = animation.size[0];
   const layout = pixelLayout(count, 1, ['number of the point', ''], (cell) => `Point number ${cell}`);
   layout.isStrip = true;
   return layout;
 }
 
-function listLayout(film, positions) {
-  const count = film.size[0];
+function listLayout(animation, positions) {
+  const count = animation.size[0];
   viewer.require(positions.length === 3 * count, 'The capture\u2019s list of points has another length.');
   const at = (cell) => [positions[3 * cell], positions[3 * cell + 1]];
   const squared = (cell, x, y) => (at(cell)[0] - x) ** 2 + (at(cell)[1] - y) ** 2;
@@ -83,7 +83,7 @@ function listLayout(film, positions) {
     }
     return best;
   };
-  const [rangeX, rangeY] = listRanges(film, positions);
+  const [rangeX, rangeY] = listRanges(animation, positions);
   const radius = 0.48 * typicalDistance(count, at, nearest);
   return {
     cells: count,
@@ -115,7 +115,7 @@ function typicalDistance(count, at, nearest) {
 }
 
 /** The part of the wall to show: around all points, with a margin. */
-function listRanges(film, positions) {
+function listRanges(animation, positions) {
   const around = (axis, known) => {
     let [low, high] = known || [Infinity, -Infinity];
     for (let i = axis; i < positions.length; i += 3) {
@@ -124,7 +124,7 @@ function listRanges(film, positions) {
     }
     return [low, high];
   };
-  const ranges = [around(0, film.x_m), around(1, film.y_m)];
+  const ranges = [around(0, animation.x_m), around(1, animation.y_m)];
   const reach = Math.max(...ranges.map(([low, high]) => high - low)) || 0.1;
   return ranges.map(([low, high]) => {
     const middle = (low + high) / 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/pictures/film.h"
+#include "nlos/pictures/animation.h"
 
 #include "nlos/pictures/image_layout.h"
 #include "nlos/pictures/light_scale.h"
@@ -16,7 +16,7 @@
 namespace nlos {
 namespace {
 
-constexpr double kBrightestOfFilm = 0.001;  // of all values, drawn in the last colour
+constexpr double kBrightestOfAnimation = 0.001;  // of all values, drawn in the last colour
 
 using Bins = std::array<std::size_t, 2>;  // first and one past the last
 
@@ -109,7 +109,7 @@ std::vector<ImagePanel> bin_panels(const core::Capture& capture, std::size_t mos
         image.value_scale = ValueScale::Gamma;
         images.push_back(std::move(image));
     }
-    share_scale(kBrightestOfFilm, images);
+    share_scale(kBrightestOfAnimation, images);
     return images;
 }
 
@@ -176,13 +176,15 @@ std::vector<ImagePanel> sequence_panels(const core::Capture& capture, std::size_
     return images;
 }
 
-std::vector<ImagePanel> film_panels(const core::Capture& capture, std::size_t most) {
+std::vector<ImagePanel> animation_panels(const core::Capture& capture, std::size_t most) {
     if (!is_picture(capture.scan)) {
-        throw core::Error("film", "found a list of points", "must be a grid of points or a camera");
+        throw core::Error(
+            "animation", "found a list of points", "must be a grid of points or a camera");
     }
     if (capture.sequence) return sequence_panels(capture, most);
     if (capture.transient.num_bins() < 2) {
-        throw core::Error("film", "found one time bin", "must be several, or a sequence of frames");
+        throw core::Error(
+            "animation", "found one time bin", "must be several, or a sequence of frames");
     }
     return bin_panels(capture, most);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/pictures/film.h"
+#include "nlos/pictures/animation.h"
 
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
@@ -17,10 +17,10 @@ float light_of(const ImagePanel& panel) {
     return std::accumulate(panel.values.begin(), panel.values.end(), 0.0F);
 }
 
-TEST(Film, ShowsEveryBinOnOneScale) {
+TEST(Animation, ShowsEveryBinOnOneScale) {
     for (const core::Capture& capture : {test_support::example_capture(core::ScanPattern::Confocal),
                                          test_support::example_image()}) {
-        const std::vector<ImagePanel> frames = film_panels(capture, 300);
+        const std::vector<ImagePanel> frames = animation_panels(capture, 300);
         ASSERT_EQ(frames.size(), 5U);
         float total = 0.0F;
         for (const ImagePanel& frame : frames) {
@@ -33,41 +33,42 @@ TEST(Film, ShowsEveryBinOnOneScale) {
     }
 }
 
-TEST(Film, TellsTheTime) {
+TEST(Animation, TellsTheTime) {
     core::Capture capture = test_support::example_capture(core::ScanPattern::Confocal);
     capture.time_axis = {2.99792458, 0.0299792458, 5};
-    EXPECT_EQ(film_panels(capture, 300)[0].title, "Path length 3.013 m, 10.050 ns");
+    EXPECT_EQ(animation_panels(capture, 300)[0].title, "Path length 3.013 m, 10.050 ns");
 }
 
-TEST(Film, LeavesDarkEndsOut) {
+TEST(Animation, LeavesDarkEndsOut) {
     core::Capture capture = test_support::example_capture(core::ScanPattern::Confocal);
     capture.time_axis.num_bins = 100;
     capture.transient = core::Transient(capture.scan.num_pairs(), 100);
     for (std::size_t bin = 40; bin < 50; ++bin) capture.transient.histogram(0)[bin] = 1.0F;
-    const std::vector<ImagePanel> frames = film_panels(capture, 300);
+    const std::vector<ImagePanel> frames = animation_panels(capture, 300);
     EXPECT_GE(frames.size(), 10U);
     EXPECT_LE(frames.size(), 20U);
 }
 
-TEST(Film, BinsShareFramesWhereTheyAreTooMany) {
+TEST(Animation, BinsShareFramesWhereTheyAreTooMany) {
     core::Capture capture = test_support::example_capture(core::ScanPattern::Confocal);
-    const std::vector<ImagePanel> frames = film_panels(capture, 2);
+    const std::vector<ImagePanel> frames = animation_panels(capture, 2);
     ASSERT_EQ(frames.size(), 2U);
     EXPECT_FLOAT_EQ(frames[0].values[0],
                     capture.transient.histogram(0)[0] + capture.transient.histogram(0)[1] +
                         capture.transient.histogram(0)[2]);
 }
 
-TEST(Film, ExhaustiveScansShowTheMiddleLitPoint) {
+TEST(Animation, ExhaustiveScansShowTheMiddleLitPoint) {
     const core::Capture capture = test_support::example_capture(core::ScanPattern::Exhaustive);
     // Lit point 2 of 4, the first of 6 sensing points.
-    EXPECT_FLOAT_EQ(film_panels(capture, 300)[0].values[0], capture.transient.histogram(2 * 6)[0]);
+    EXPECT_FLOAT_EQ(animation_panels(capture, 300)[0].values[0],
+                    capture.transient.histogram(2 * 6)[0]);
 }
 
-TEST(Film, ScansWithMoreLitThanSensingPointsShowTheLitOnes) {
+TEST(Animation, ScansWithMoreLitThanSensingPointsShowTheLitOnes) {
     core::Capture capture = test_support::example_capture(core::ScanPattern::Exhaustive);
     std::swap(capture.scan.wall().sensing, capture.scan.wall().illumination);
-    const std::vector<ImagePanel> frames = film_panels(capture, 300);
+    const std::vector<ImagePanel> frames = animation_panels(capture, 300);
     ASSERT_EQ(frames[0].values.size(), 6U);
     for (std::size_t lit = 0; lit < 6; ++lit) {  // sensing point 2 of 4
         const float light = capture.transient.histogram(4 * lit + 2)[0];
@@ -75,24 +76,24 @@ TEST(Film, ScansWithMoreLitThanSensingPointsShowTheLitOnes) {
     }
 }
 
-TEST(Film, SequencesAreShownFrameByFrame) {
+TEST(Animation, SequencesAreShownFrameByFrame) {
     core::Capture capture = test_support::example_image();
     core::FrameSequence sequence;
     sequence.frames.assign(30, capture.transient);
     capture.sequence = sequence;
-    EXPECT_EQ(film_panels(capture, 300).size(), 30U);
-    EXPECT_EQ(film_panels(capture, 10).size(), 10U);
+    EXPECT_EQ(animation_panels(capture, 300).size(), 30U);
+    EXPECT_EQ(animation_panels(capture, 10).size(), 10U);
 }
 
-TEST(Film, NeedsAnImageAndTime) {
+TEST(Animation, NeedsAnImageAndTime) {
     core::Capture list = test_support::example_capture(core::ScanPattern::Confocal);
     list.scan.wall().sensing.grid.reset();
     list.scan.wall().illumination.grid.reset();
-    EXPECT_ERROR_WITH(film_panels(list, 300), "a list of points");
+    EXPECT_ERROR_WITH(animation_panels(list, 300), "a list of points");
     core::Capture gate = test_support::example_capture(core::ScanPattern::Confocal);
     gate.time_axis.num_bins = 1;
     gate.transient = core::Transient(gate.scan.num_pairs(), 1);
-    EXPECT_ERROR_WITH(film_panels(gate, 300), "one time bin");
+    EXPECT_ERROR_WITH(animation_panels(gate, 300), "one time bin");
 }
 
 }  // namespace

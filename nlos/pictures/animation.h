@@ -35,12 +35,12 @@ ImagePanel gated_panel(const core::PinholeCamera& camera,
 /// most   the largest number of frames wanted, at least 2
 std::vector<ImagePanel> sequence_panels(const core::Capture& capture, std::size_t most);
 
-/// The frames of a film: of a sequence those that sequence_panels() gives; of a capture the light
-/// of a bin each, or of a few that share a frame, where there is light. Of an exhaustive scan it is
-/// that of the middle lit point.
+/// The frames of an animation: of a sequence those that sequence_panels() gives; of a capture the
+/// light of a bin each, or of a few that share a frame, where there is light. Of an exhaustive scan
+/// it is that of the middle lit point.
 ///
 /// most     the largest number of frames wanted, at least 2
 /// throws   core::Error for lists of points, and for a single time gate
-std::vector<ImagePanel> film_panels(const core::Capture& capture, std::size_t most);
+std::vector<ImagePanel> animation_panels(const core::Capture& capture, std::size_t most);
 
 }  // namespace nlos

@@ -41,7 +41,7 @@ function paintCursor(context, plot, data, bin) {
   context.fillRect((x0 + x1) / 2 - 0.5, plot.area.top, 1, plot.area.height);
 }
 
-/** Makes the histogram of a film; `onBin(bin)` is told where it is pressed. */
+/** Makes the histogram of an animation; `onBin(bin)` is told where it is pressed. */
 viewer.createHistogram = function (data, onBin) {
   const shown = { values: null, bin: null, range: [0, data.bins - 1] };
   const plot = viewer.createPlot({
@@ -58,16 +58,16 @@ viewer.createHistogram = function (data, onBin) {
       if (what === 'press' || what === 'drag') onBin(data.binAt(x));
     },
   });
-  const cell = data.film.kind === 'camera' ? 'pixel' : 'point';
+  const cell = data.animation.kind === 'camera' ? 'pixel' : 'point';
   const legend = viewer.element(
     'p',
-    { class: 'film-legend' },
+    { class: 'animation-legend' },
     viewer.element('span', { class: 'key-line' }, 'this ' + cell),
     viewer.element('span', { class: 'key-area' }, `mean of all ${cell}s`),
   );
   const makeAxis = (scale) => {
     const { factor, text } = scale.kind === 'log' ? { factor: 1, text: '' } : viewer.axisFactor(scale.high);
-    const unit = [text, data.film.unit].filter(Boolean).join(' ');
+    const unit = [text, data.animation.unit].filter(Boolean).join(' ');
     const title = viewer.titleWithUnit('light in a ' + data.word, unit);
     return { scale, title, format: (value) => viewer.formatNumber(value / factor, 3) };
   };
