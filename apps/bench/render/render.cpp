@@ -107,7 +107,7 @@ BenchCurve measure_curve(const BenchScene& bench,
         progress.update(share_of(i, efforts.size()), method);
         curve.points.push_back(measure(bench, efforts[i].settings, reference, repeats));
         curve.points.back().effort = efforts[i].name;
-        if (method != core::enum_name(renderer::Estimator::ThirdBounce)) {
+        if (!renderer::traits_of(efforts[i].settings.method).is_deterministic) {
             curve.points.back().samples = efforts[i].settings.samples;
         }
     }
@@ -139,14 +139,11 @@ std::vector<Effort> third_bounce_efforts(renderer::RenderSettings settings) {
 }
 
 // The time a method takes to an error: that of the cheapest run below it when the method is
-// deterministic. Path tracing goes on along its fitted line, the other estimators from their most
-// accurate run with the inverse root of time: their few runs begin before that law holds.
+// deterministic. Others go on from their most accurate run with the inverse root of time: their few
+// runs begin before that law holds.
 double seconds_to(const BenchCurve& curve, double error) {
-    if (curve.method == core::enum_name(renderer::Estimator::Path)) {
-        return std::pow(error / curve.coefficient, 1.0 / curve.slope);
-    }
-    if (curve.method != core::enum_name(renderer::Estimator::ThirdBounce)) {
-        const BenchPoint& last = curve.points.back();
+    const BenchPoint& last = curve.points.back();
+    if (last.samples > 0) {
         return last.cpu_seconds * std::pow(last.rel_l2 / error, 2);
     }
     double seconds = 0.0;
@@ -165,7 +162,7 @@ core::Json equal_errors(const std::vector<BenchCurve>& curves, const BenchCurve&
         for (const double error : {0.05, 0.02, 0.01}) {
             const double seconds = seconds_to(curve, error);
             if (seconds == 0.0) continue;
-            const double path_seconds = seconds_to(path, error);
+            const double path_seconds = std::pow(error / path.coefficient, 1.0 / path.slope);
             const double path_error = path.coefficient * std::pow(seconds, path.slope);
             rows.push_back({{"method", curve.method},
                             {"at_rel_l2", error},
