@@ -64,7 +64,7 @@ Task sensor_task() {
 
 std::vector<Task> all_tasks() {
     const core::Scan list = doppler_test::four_points(core::ScanPattern::Confocal);
-    core::Scan grid = list;
+    core::WallScan grid = list.wall();
     grid.sensing.grid = {2, 2};
     grid.illumination.grid = {2, 2};
     std::vector<Task> tasks{
