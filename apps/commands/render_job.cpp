@@ -230,10 +230,10 @@ renderer::RenderResult render_input(RenderInput input, const core::Progress& cal
             calib::record_with(*input.calibration, result.capture, input.description.time_axis);
     }
     report_darkness(result, progress);
-    core::Json& info = result.capture.scene_info;
-    info = provenance(input, result);
+    core::Json info = provenance(input, result);
     if (light) info["light"] = write_light(*light, rendered.time_axis);
     if (!warnings.empty()) info["warnings"] = warnings;
+    result.capture.scene_info = std::move(info);
     return result;
 }
 
