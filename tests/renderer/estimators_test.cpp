@@ -189,8 +189,8 @@ TEST_P(Estimators, RenderTheSameOrNameOneThatCan) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Tasks, Estimators, testing::ValuesIn(all_tasks()), [](const auto& info) {
-    std::string name = info.param.name;
+INSTANTIATE_TEST_SUITE_P(Tasks, Estimators, testing::ValuesIn(all_tasks()), [](const auto& task) {
+    std::string name = task.param.name;
     std::erase_if(name, [](char c) { return !std::isalnum(c); });
     return name;
 });
