@@ -107,7 +107,7 @@ int main(int argc, char** argv) {
     }
     const core::ThreadLimit one_thread(1);
     const auto description = renderer::read_scene_description(argv[1], {});
-    const core::Scan scan = renderer::make_scan(description);
+    const core::WallScan scan = renderer::make_scan(description).wall();
     const renderer::Scene scene = renderer::load_scene(description, scan);
     const auto excluded =
         renderer::ExcludedFacets::of(scene, description.time_axis, description.render);

@@ -201,8 +201,8 @@ TEST(Backprojection, OfAConfocalGridEqualsThatOfPairsOnAnyCommonLattice) {
         expect_equal(run_grid(problem, y), run_pairs(problem, y), 1e-10);
     }
     Problem coarse = make_problem(ScanPattern::Confocal);
-    coarse.scan.wall().sensing = nlos_test::wall_grid({4, 24}, {0.05, 0.01});
-    coarse.scan.wall().illumination = coarse.scan.wall().sensing;
+    coarse.scan.sensing = nlos_test::wall_grid({4, 24}, {0.05, 0.01});
+    coarse.scan.illumination = coarse.scan.sensing;
     for (const std::size_t num_y : {12, 16, 18}) {
         coarse.voxels.y_m = cell_centers(-0.12, 0.12, num_y);
         const auto y = random_values(coarse.num_values(), 6);
