@@ -40,6 +40,12 @@ bool misses_axis(const BlockSphere& sphere,
     return middle + reach < axis.opl_start_m || middle - reach > axis.opl_end_m();
 }
 
+// Whether both ends see elements of a block that reflect from one to the other.
+bool connects(const ElementBlock& block, const PairEnd& light, const PairEnd& sensor) {
+    if ((light.table->simd_groups & sensor.table->simd_groups) == 0) return false;
+    return !block.response.towards_source || coincide(*light.point, *sensor.point);
+}
+
 }  // namespace
 
 ThirdBounceScan::ThirdBounceScan(const Scene& scene,
@@ -284,6 +290,9 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile) {
     const auto pair_of = [&](std::size_t l, std::size_t s) {
         return (tile.lights.begin + l) * scan_.sensing.size() + tile.sensors.begin + s;
     };
+    const auto histogram_of = [&](std::size_t l, std::size_t s) {
+        return std::span(histograms).subspan((l * num_sensors + s) * num_bins, num_bins);
+    };
     for (std::size_t b = 0; b < elements_->blocks.size(); ++b) {
         const ElementBlock& block = elements_->blocks[b];
         lights.compute(block, b);
@@ -292,17 +301,10 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile) {
             const PairEnd& light = lights.ends()[l];
             for (std::size_t s = 0; s < num_sensors; ++s) {
                 const PairEnd& sensor = sensors.ends()[s];
-                if ((light.table->simd_groups & sensor.table->simd_groups) == 0) continue;
-                if (block.response.towards_source && !coincide(*light.point, *sensor.point)) {
-                    continue;
-                }
+                if (!connects(block, light, sensor)) continue;
                 const core::TimeAxis axis = axis_of_pair(pair_of(l, s));
                 if (misses_axis(elements_->spheres[b], *light.point, *sensor.point, axis)) continue;
-                add_pair(block,
-                         light,
-                         sensor,
-                         axis,
-                         std::span(histograms).subspan((l * num_sensors + s) * num_bins, num_bins));
+                add_pair(block, light, sensor, axis, histogram_of(l, s));
             }
         }
     }
@@ -310,13 +312,10 @@ void ThirdBounceScan::integrate_tile(const PairTiles::Tile& tile) {
     for (std::size_t l = 0; l < tile.lights.size(); ++l) {
         for (std::size_t s = 0; s < num_sensors; ++s) {
             check(visibility, pair_of(l, s), lights.end(l), sensors.end(s));
+            store(pair_of(l, s), histogram_of(l, s));
         }
     }
     num_rays_ += visibility.num_rays();
-    for (std::size_t i = 0; i < tile.lights.size() * num_sensors; ++i) {
-        store(pair_of(i / num_sensors, i % num_sensors),
-              std::span(histograms).subspan(i * num_bins, num_bins));
-    }
 }
 
 }  // namespace renderer
