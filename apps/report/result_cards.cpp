@@ -3,13 +3,13 @@
 
 #include "apps/estimate_text.h"
 #include "calib/fit_file.h"
-#include "calib/statistics/median.h"
 #include "calib/track/track_file.h"
 #include "nlos/pictures/light_scale.h"
 #include "nlos/pictures/pictures.h"
 #include "nlos/preparation/wall_frame.h"
 #include "renderer/core/mapped_file.h"
 #include "renderer/core/settings_json.h"
+#include "renderer/core/statistics.h"
 
 #include <fmt/core.h>
 
@@ -258,7 +258,7 @@ ResultCard track_card(const std::string& path, const core::Json& json) {
     }
     if (!sigmas_m.empty()) {
         card.facts.emplace_back("stated error, median",
-                                short_number(calib::median(sigmas_m)) + " m");
+                                short_number(core::upper_median(sigmas_m)) + " m");
     }
     card.picture_png = picture_beside(path);
     for (const core::Json& text : json.value("warnings", core::Json::array())) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "calib/fit/solution.h"
-#include "calib/statistics/median.h"
 #include "calib/statistics/poisson_deviance.h"
 #include "renderer/core/capture/recorded_detector.h"
+#include "renderer/core/statistics.h"
 
 #include <Eigen/Dense>
 #include <fmt/core.h>
@@ -77,7 +77,7 @@ void warn_of_deviance(const FitDriver& driver, double min_mean, FitResult& resul
     const std::vector<Excess> excesses = pair_excesses(result, min_mean);
     std::vector<double> sizes;
     for (const Excess& pair : excesses) sizes.push_back(std::abs(pair.sigmas()));
-    const double limit = std::max(kWild, kWildOfUsual * median(std::move(sizes)));
+    const double limit = std::max(kWild, kWildOfUsual * core::upper_median(std::move(sizes)));
     for (std::size_t i = 0; i < excesses.size(); ++i) {
         const Excess& pair = excesses[i];
         if (pair.sigmas() > limit) {

@@ -2,8 +2,8 @@
 #include "calib/fit/stage_solver.h"
 
 #include "calib/model/state_vector.h"
-#include "calib/statistics/median.h"
 #include "renderer/core/error.h"
+#include "renderer/core/statistics.h"
 
 #include <ceres/ceres.h>
 
@@ -154,7 +154,8 @@ double loss_width(const FitObjective& objective, const SolveSettings& settings) 
     for (std::size_t i = 0; i < objective.num_pairs(); ++i) {
         squares.push_back(objective.pair(i).residual.squaredNorm());
     }
-    return settings.loss_scale * std::sqrt(std::max(median(std::move(squares)), 1e-300));
+    return settings.loss_scale *
+           std::sqrt(std::max(core::upper_median(std::move(squares)), 1e-300));
 }
 
 std::unique_ptr<ceres::LossFunction> make_loss(LossKind kind, double width) {

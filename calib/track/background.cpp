@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "calib/track/background.h"
 
-#include "calib/statistics/median.h"
+#include "renderer/core/statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,7 @@ void Background::average(const std::vector<std::vector<double>>& frames) {
     std::vector<double> values(frames.size());
     for (std::size_t i = 0; i < mean_.size(); ++i) {
         for (std::size_t f = 0; f < frames.size(); ++f) values[f] = frames[f][i];
-        const double center = median(values);
+        const double center = core::upper_median(values);
         const double limit = center + kOutlierSigmas * std::sqrt(center + 1.0);
         double sum = kPriorCounts;
         double count = 0.0;

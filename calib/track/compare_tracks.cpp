@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "calib/track/compare_tracks.h"
 
-#include "calib/statistics/median.h"
+#include "renderer/core/statistics.h"
 
 #include <Eigen/Dense>
 #include <fmt/core.h>
@@ -20,7 +20,8 @@ double tolerance_s(const std::vector<TrackedFrame>& frames) {
     for (std::size_t i = 1; i < frames.size(); ++i) {
         intervals.push_back(std::abs(frames[i].time_s - frames[i - 1].time_s));
     }
-    return intervals.empty() ? std::numeric_limits<double>::infinity() : 0.5 * median(intervals);
+    return intervals.empty() ? std::numeric_limits<double>::infinity()
+                             : 0.5 * core::upper_median(intervals);
 }
 
 std::optional<double> share(std::size_t part, std::size_t all) {
@@ -94,7 +95,7 @@ TrackScores TrackScorer::scores() const {
         double squares = 0.0;
         for (const double d : distances_m_) squares += d * d;
         scores.rmse_m = std::sqrt(squares / static_cast<double>(distances_m_.size()));
-        scores.median_m = median(distances_m_);
+        scores.median_m = core::upper_median(distances_m_);
     }
     scores.coverage = share(covered_, with_covariance_);
     scores.false_alarms = share(alarmed_, frames_);

@@ -2,8 +2,8 @@
 #include "nlos/compare/compare.h"
 
 #include "nlos/compare/compare_image.h"
-#include "nlos/compare/compare_scores.h"
 #include "renderer/core/nearest_neighbours.h"
+#include "renderer/core/statistics.h"
 
 #include <fmt/core.h>
 
@@ -102,7 +102,7 @@ double angle_deg(const core::Vec3& a, const core::Vec3& b) {
 void score_angles(const std::vector<double>& angles_deg, Metrics& metrics) {
     if (angles_deg.empty()) return;
     metrics.normal_mae_deg = mean(angles_deg);
-    metrics.normal_median_deg = median(angles_deg);
+    metrics.normal_median_deg = core::median(angles_deg);
 }
 
 void score_depth(const core::DepthMap& depth,
@@ -126,7 +126,7 @@ void score_depth(const core::DepthMap& depth,
     const auto count = static_cast<double>(errors_m.size());
     metrics.depth_mae_m = sum / count;
     metrics.depth_rmse_m = std::sqrt(squares / count);
-    metrics.depth_median_m = median(std::move(errors_m));
+    metrics.depth_median_m = core::median(std::move(errors_m));
 }
 
 void score_normals(const Volume& volume,
@@ -183,12 +183,6 @@ std::vector<float> albedo_image(const core::DepthMap& map) {
 }
 
 }  // namespace
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const std::size_t half = values.size() / 2;
-    return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
 
 Metrics compare_points(const core::PointCloud& result,
                        const core::PointCloud& truth,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/pictures/light_scale.h"
 
+#include "renderer/core/statistics.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -76,10 +78,7 @@ std::array<std::size_t, 2> shown_bins(const std::vector<double>& mean) {
 std::array<double, 2> light_range(std::vector<float> values, double brightest_share) {
     std::erase_if(values, [](float value) { return std::isnan(value); });
     if (values.empty()) return {0.0, 0.0};
-    const double share = 1.0 - brightest_share;
-    const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + rank, values.end());
-    const float bright = values[static_cast<std::size_t>(rank)];
+    const float bright = core::quantile(values, 1.0 - brightest_share);
     // A gate may hold so little that the share is all of it.
     const float top = bright > 0.0F ? bright : *std::max_element(values.begin(), values.end());
     return {0.0, double{top}};
@@ -92,9 +91,8 @@ void choose_scale(ImagePanel& panel) {
         if (value > 0.0F) lit.push_back(value);
     }
     if (lit.empty()) return;
-    const auto middle = lit.begin() + static_cast<std::ptrdiff_t>(lit.size() / 2);
-    std::nth_element(lit.begin(), middle, lit.end());
-    if (*middle < kFaint * (*panel.value_range)[1]) panel.value_scale = ValueScale::Gamma;
+    if (core::upper_median(std::move(lit)) < kFaint * (*panel.value_range)[1])
+        panel.value_scale = ValueScale::Gamma;
 }
 
 }  // namespace nlos

@@ -7,6 +7,7 @@
 #include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/core/json_file.h"
 #include "renderer/core/parallel.h"
+#include "renderer/core/statistics.h"
 
 #include <fmt/format.h>
 
@@ -137,13 +138,12 @@ std::optional<std::string> fast_onset(const core::Capture& capture,
         }
     }
     if (speeds.size() < nx * ny / 2) return std::nullopt;
-    const auto middle = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2);
-    std::nth_element(speeds.begin(), middle, speeds.end());
-    if (*middle < kFastestOnset) return std::nullopt;
+    const double speed = core::upper_median(std::move(speeds));
+    if (speed < kFastestOnset) return std::nullopt;
     return fmt::format(
         "first light moves along the wall {:.2f} times as fast as a path length can "
         "change; bins look narrower than {:.4g} m (capture.bin_width_m sets them)",
-        *middle,
+        speed,
         capture.time_axis.bin_width_m);
 }
 

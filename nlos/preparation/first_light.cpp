@@ -3,6 +3,7 @@
 
 #include "nlos/preparation/wall_frame.h"
 #include "renderer/core/parallel.h"
+#include "renderer/core/statistics.h"
 
 #include <Eigen/LU>
 
@@ -16,7 +17,7 @@ constexpr std::size_t kMinPoints = 16;
 constexpr std::size_t kWindowsPerSide = 4;
 constexpr double kLargestResidual_bins = 1.0;
 constexpr double kLargestUncertainty = 0.05;
-constexpr double kShareBelow = 0.9;
+constexpr double kFractionBelow = 0.9;
 
 /// First light of a grid's points, as range.
 struct RangeMap {
@@ -137,11 +138,7 @@ std::optional<BendOfFirstLight> bend_of_first_light(
         }
     }
     if (2 * bends.size() < num_windows || bends.empty()) return std::nullopt;
-    const auto at = bends.begin() + static_cast<std::ptrdiff_t>(
-                                        kShareBelow * static_cast<double>(bends.size() - 1));
-    std::nth_element(
-        bends.begin(), at, bends.end(), [](const auto& a, const auto& b) { return a.k < b.k; });
-    return *at;
+    return core::quantile(std::move(bends), kFractionBelow, &BendOfFirstLight::k);
 }
 
 }  // namespace nlos

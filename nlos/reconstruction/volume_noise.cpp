@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruction/volume_noise.h"
 
+#include "renderer/core/statistics.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -43,9 +45,7 @@ double median_largest_rise(const Volume& volume, const Volume& again, const Volu
         double& top = largest[i / nz];
         top = std::max(top, noise.significance(rise, i % nz));
     }
-    const auto middle = largest.begin() + static_cast<std::ptrdiff_t>(largest.size() / 2);
-    std::nth_element(largest.begin(), middle, largest.end());
-    return *middle;
+    return core::upper_median(std::move(largest));
 }
 
 }  // namespace

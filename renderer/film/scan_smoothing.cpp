@@ -2,6 +2,7 @@
 #include "renderer/film/scan_smoothing.h"
 
 #include "renderer/core/parallel.h"
+#include "renderer/core/statistics.h"
 
 #include <Eigen/Core>
 
@@ -121,13 +122,6 @@ core::Transient smooth_bins(const core::Transient& from, int width) {
     return to;
 }
 
-// Squared norms over all pairs and bins.
-double squared_norm(const core::Transient& t) {
-    return core::parallel_sum<double>(t.num_pairs(), 0.0, [&](std::size_t pair) {
-        return row(t, pair).cast<double>().square().sum();
-    });
-}
-
 // The squared bias of smoothing, at one standard deviation above its estimate.
 double squared_bias(const core::Transient& mean,
                     const core::Transient& smooth_mean,
@@ -176,7 +170,7 @@ SmoothedMean smooth_mean(const core::Transient& a,
     const auto smoothed_by = [&](const SmoothingWidths& widths) {
         SmoothedMean result{smooth_scan(mean, scan, widths), widths};
         const core::Transient rest = smooth_scan(difference, scan, widths);
-        result.squared_noise = 0.25 * squared_norm(rest);
+        result.squared_noise = 0.25 * core::squared_norm(rest.values());
         result.squared_error = result.squared_noise;
         if (!widths.is_none()) {
             result.squared_error += squared_bias(mean, result.mean, difference, rest);
@@ -199,9 +193,9 @@ SmoothedMean smooth_mean(const core::Transient& a,
     while (widen(&SmoothingWidths::bins)) {
     }
     // The product of two independent estimates has no bias from their noise.
-    const double squared_noise = 0.25 * squared_norm(difference);
+    const double squared_noise = 0.25 * core::squared_norm(difference.values());
     if (precomputed != nullptr) mean += *precomputed;
-    best.squared_signal = std::max(0.0, squared_norm(mean) - squared_noise);
+    best.squared_signal = std::max(0.0, core::squared_norm(mean.values()) - squared_noise);
     return best;
 }
 

@@ -3,6 +3,7 @@
 
 #include "renderer/core/error.h"
 #include "renderer/core/process.h"
+#include "renderer/core/statistics.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/scene/coinciding_points.h"
 
@@ -49,7 +50,7 @@ double relative_difference(const Transient& a, const Transient& b) {
         const double difference = double{a.values()[i]} - double{b.values()[i]};
         sum += difference * difference;
     }
-    const double norm = squared_norm(b);
+    const double norm = core::squared_norm(b.values());
     if (sum == 0.0) return 0.0;
     return norm > 0.0 ? std::sqrt(sum / norm) : std::numeric_limits<double>::infinity();
 }
@@ -138,12 +139,6 @@ core::TimeAxis pilot_axis(const core::TimeAxis& axis) {
     return {first_bin * axis.bin_width_m, axis.bin_width_m, axis.num_bins + 1};
 }
 
-double squared_norm(const Transient& transient) {
-    double sum = 0.0;
-    for (const float value : transient.values()) sum += double{value} * double{value};
-    return sum;
-}
-
 PilotRuns::PilotRuns(const Scene& scene,
                      const core::WallScan& scan,
                      const core::TimeAxis& axis,
@@ -200,7 +195,8 @@ void PilotRuns::estimate_norm(int level) {
         cost_ += integrator.cost();
         return true;
     });
-    norm_per_pair_ = std::sqrt(squared_norm(transient) / static_cast<double>(few.num_pairs()));
+    norm_per_pair_ =
+        std::sqrt(core::squared_norm(transient.values()) / static_cast<double>(few.num_pairs()));
 }
 
 const Pilot& PilotRuns::run(int level) {
@@ -226,8 +222,8 @@ const Pilot& PilotRuns::run(int level) {
     pilot.missed_error = std::sqrt(std::max(0.0, missed.value - std::sqrt(missed.variance)));
     cost_ += integrator.cost();
     if (norm_per_pair_ == 0.0) {
-        norm_per_pair_ =
-            std::sqrt(squared_norm(pilot.transient) / static_cast<double>(pilot_scan_.num_pairs()));
+        norm_per_pair_ = std::sqrt(core::squared_norm(pilot.transient.values()) /
+                                   static_cast<double>(pilot_scan_.num_pairs()));
     }
     return pilots_.emplace(level, std::move(pilot)).first->second;
 }
@@ -262,7 +258,7 @@ double PilotRuns::error_of(int level) {
         difference = relative_difference(pilot.transient, run(--finest).transient);
     }
     if (level - finest < kReferenceSteps) difference *= kNextLevelFactor;
-    const double norm = std::sqrt(squared_norm(pilots_.at(finest).transient));
+    const double norm = std::sqrt(core::squared_norm(pilots_.at(finest).transient.values()));
     // Shadow edges that both pilot runs leave uncertain do not show in their difference.
     const double shadows = norm > 0.0 ? pilot.shadow_error / norm : 0.0;
     const double missed = norm > 0.0 ? pilot.missed_error / norm : 0.0;

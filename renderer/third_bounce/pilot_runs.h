@@ -113,7 +113,4 @@ class PilotRuns {
     TracingCost cost_;
 };
 
-/// Sum of all values squared.
-double squared_norm(const core::Transient& transient);
-
 }  // namespace renderer

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/third_bounce/third_bounce.h"
 
+#include "renderer/core/statistics.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/third_bounce/pilot_runs.h"
 
@@ -235,7 +236,7 @@ ThirdBounce Integrator::integrate_all(const core::Progress& progress) {
     result.tracing_seconds = cost_.seconds;
     const double wall = scene_.wall_albedo() / core::kPi;
     for (float& value : result.transient.values()) value = static_cast<float>(value * wall * wall);
-    const double norm = squared_norm(result.transient);
+    const double norm = core::squared_norm(result.transient.values());
     if (norm > 0.0) result.squared_error = std::pow(result.estimated_error.value_or(0.0), 2) * norm;
     return result;
 }

@@ -3,9 +3,9 @@
 
 #include "apps/bench/field/peak_depths.h"
 #include "apps/bench/field/reconstruction_table.h"
-#include "nlos/compare/compare_scores.h"
 #include "nlos/formats/capture_file.h"
 #include "renderer/core/settings_json.h"
+#include "renderer/core/statistics.h"
 
 #include <fmt/core.h>
 
@@ -65,7 +65,7 @@ std::optional<double> bright_depth_m(const core::DepthMap& depth, const nlos::Vo
         }
     }
     if (depths.empty()) return std::nullopt;
-    return nlos::median(std::move(depths));
+    return core::median(std::move(depths));
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/fit/fit.h"
 #include "apps/bench/fit/fit_trials.h"
-#include "nlos/compare/compare_scores.h"
+#include "renderer/core/statistics.h"
 
 #include <fmt/core.h>
 
@@ -93,11 +93,11 @@ void bench_heights(int trials, FitBench& bench) {
                          "bound",
                          vertices),
              fmt::format("bound {:.2f} mm, {:.2f} mm, <= 1.3",
-                         nlos::median(found.bounds_m) / kMillimetre,
-                         nlos::median(found.corner_bounds_m) / kMillimetre),
+                         core::median(found.bounds_m) / kMillimetre,
+                         core::median(found.corner_bounds_m) / kMillimetre),
              fmt::format("{:.2f} mm, {:.2f} mm, {:.2f}",
-                         nlos::median(found.errors_m) / kMedianOverSigma / kMillimetre,
-                         nlos::median(found.corner_errors_m) / kMedianOverSigma / kMillimetre,
+                         core::median(found.errors_m) / kMedianOverSigma / kMillimetre,
+                         core::median(found.corner_errors_m) / kMedianOverSigma / kMillimetre,
                          over_bound),
              over_bound <= 1.3});
     }

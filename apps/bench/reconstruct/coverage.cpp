@@ -2,9 +2,9 @@
 #include "apps/bench/command.h"
 #include "apps/bench/reconstruct/reconstruct.h"
 #include "apps/bench/reconstruct/reconstruct_trials.h"
-#include "calib/statistics/median.h"
 #include "nlos/plots/plot.h"
 #include "renderer/core/json_file.h"
+#include "renderer/core/statistics.h"
 #include "renderer/scene/ground_truth.h"
 
 #include <fmt/format.h>
@@ -73,7 +73,7 @@ struct DepthTally {
 };
 
 double median(const std::vector<double>& values) {
-    return values.empty() ? 0.0 : calib::median(values);
+    return values.empty() ? 0.0 : core::upper_median(values);
 }
 
 /// Columns of one method by tenths of their probability.

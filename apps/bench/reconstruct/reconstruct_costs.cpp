@@ -3,8 +3,8 @@
 #include "apps/bench/reconstruct/reconstruct.h"
 #include "apps/bench/reconstruct/reconstruct_trials.h"
 #include "apps/bench/scene.h"
-#include "nlos/compare/compare_scores.h"
 #include "renderer/core/json_file.h"
+#include "renderer/core/statistics.h"
 
 #include <fmt/core.h>
 
@@ -98,13 +98,13 @@ core::Json measure_cost(const CostCase& job, int repeats) {
                      static_cast<double>(one.result.volume.axes.num_voxels());
         }
     }
-    const double cpu_seconds = nlos::median(all_cpu_seconds);
-    const double limit_seconds = nlos::median(limits);
+    const double cpu_seconds = core::median(all_cpu_seconds);
+    const double limit_seconds = core::median(limits);
     const double ratio = limit_seconds > 0.0 ? cpu_seconds / limit_seconds : 0.0;
     const double gpairs_per_s = gpairs / cpu_seconds;
     core::Json row{{"name", job.name},
                    {"cpu_seconds", cpu_seconds},
-                   {"seconds", nlos::median(all_seconds)},
+                   {"seconds", core::median(all_seconds)},
                    {"limit_seconds", limit_seconds},  // of FFTs or multiply-adds; 0: not measured
                    {"ratio", ratio},
                    {"gpairs_per_s", gpairs_per_s},  // pairs times voxels; 0: not counted

@@ -5,11 +5,11 @@
 #include "apps/bench/output.h"
 #include "apps/bench/scene.h"
 #include "apps/shapes/shapes.h"
-#include "nlos/compare/compare_scores.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/core/random.h"
 #include "renderer/core/settings_json.h"
+#include "renderer/core/statistics.h"
 #include "renderer/third_bounce/third_bounce.h"
 
 #include <fmt/core.h>
@@ -239,17 +239,17 @@ core::Json cost_of(const std::string& measurement,
         million_rays = 1e-6 * static_cast<double>(result.num_rays);
         rel_l2 = relative_l2(capture_of(bench.scan(), axis, result.transient), reference);
     }
-    const double cpu_seconds = nlos::median(seconds);
+    const double cpu_seconds = core::median(seconds);
     return {{"measurement", measurement},
             {"cpu_seconds", cpu_seconds},
             {"share", nullptr},  // of the histogram's
             {"rel_l2", rel_l2},  // against the same to 0.2 %
             {"million_rays", million_rays},
             // 1e6 rays per second: while rays are traced, and of the whole.
-            {"tracing_rate", million_rays / nlos::median(tracing_seconds)},
+            {"tracing_rate", million_rays / core::median(tracing_seconds)},
             {"whole_rate", million_rays / cpu_seconds},
             // Of Embree alone, with other rays: see shadow_ray_seconds().
-            {"embree_rate", 1e-6 / nlos::median(ray_seconds)}};
+            {"embree_rate", 1e-6 / core::median(ray_seconds)}};
 }
 
 }  // namespace
