@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruct_choices.h"
 
+#include "nlos/methods/virtual_wave.h"
+#include "nlos/preparation/capture_check.h"
+#include "nlos/preparation/direct_response.h"
 #include "nlos/preparation/wiener_snr.h"
 #include "renderer/core/capture/recorded_detector.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace nlos {
@@ -17,13 +22,14 @@ constexpr double kBinOfResponse = 0.4;  // standard deviations: widens it by les
 
 /// As many bins as keep the range they cover within a quarter of the wall points' distance: finer
 /// depth than that no aperture of this sampling resolves, and noise and work shrink with the bins.
-/// A gate keeps some bins too. The solver takes wider ones where its response smears more.
+/// A gate keeps some bins too. A method that explains the response takes wider ones where that
+/// smears more.
 int default_merge_bins(const PreparedCapture& prepared, const ReconstructSettings& settings) {
     const core::TimeAxis& axis = prepared.time_axis;
     if (!prepared.wall.grid) return 1;
     double limit_m =
         0.25 * std::min(prepared.wall.grid->pitch_m[0], prepared.wall.grid->pitch_m[1]);
-    if (settings.method == Method::Solver && core::is_stated(settings.response)) {
+    if (traits_of(settings).explains_response && core::is_stated(settings.response)) {
         const auto response = core::make_response(settings.response, "response");
         const double range_m = 0.5 * std::sqrt(core::moments(response).variance_m2);
         limit_m = std::max(limit_m, kBinOfResponse * range_m);
@@ -38,20 +44,19 @@ int default_merge_bins(const PreparedCapture& prepared, const ReconstructSetting
     return merge;
 }
 
-/// What takes the stated response off histograms; null when none is stated.
-std::shared_ptr<const ResponseDeconvolution> deconvolution_of(const ReconstructSettings& settings,
-                                                              const core::TimeAxis& axis) {
+/// The stated response on bins of an axis; no weights: none is stated.
+core::ResponseFilter response_filter(const ReconstructSettings& settings,
+                                     const core::TimeAxis& axis) {
     if (!core::is_stated(settings.response)) return {};
-    const core::ResponseFilter filter =
-        core::sample_response(core::make_response(settings.response, "response"), axis.bin_width_m);
-    return std::make_shared<const ResponseDeconvolution>(
-        filter, static_cast<std::size_t>(axis.num_bins), settings.response_floor);
+    return core::sample_response(core::make_response(settings.response, "response"),
+                                 axis.bin_width_m);
 }
 
 /// Distance of voxels along z unless set: a bin's range, or what the virtual wave resolves.
 double default_depth_step_m(const core::TimeAxis& axis, const ReconstructSettings& settings) {
     const double bin = 0.5 * axis.bin_width_m;
-    return uses_wave(settings) ? std::max(bin, *settings.phasor.wavelength_m / 8.0) : bin;
+    return traits_of(settings).propagates_wave ? std::max(bin, *settings.phasor.wavelength_m / 8.0)
+                                               : bin;
 }
 
 /// Half the path lengths that the axis covers once device legs are taken off.
@@ -67,17 +72,42 @@ std::array<double, 2> default_z_range(const core::WallScan& scan, const core::Ti
     return {begin, end};
 }
 
-}  // namespace
-
-bool uses_wave(const ReconstructSettings& settings) {
-    return settings.method == Method::Phasor ||
-           (settings.method == Method::Fbp && settings.filter == FbpFilter::Phasor);
+/// Crops the wall's direct return off, whose shape is the response unless one is known.
+void leave_out_direct_return(const core::Capture& capture, Reconstruction& result) {
+    ReconstructSettings& settings = result.settings;
+    if (settings.crop.opl_range_m) return;
+    const std::optional<DirectResponse> direct = measure_direct_return(capture);
+    const double end_m = capture.time_axis.opl_end_m();
+    if (!direct || direct->end_opl_m >= end_m) return;
+    settings.crop.opl_range_m = {direct->end_opl_m, end_m};
+    if (!core::is_stated(settings.response) && !core::recorded_response(capture)) {
+        settings.response = direct->response;
+    }
+    result.findings.push_back(describe(*direct));
 }
 
-bool makes_up_for_falloff(const core::WallScan& scan, const ReconstructSettings& settings) {
-    return uses_wave(settings) && scan.pattern != core::ScanPattern::Confocal;
+/// The method, with what it takes from the capture's provenance: `auto` lets one that can explain a
+/// recorded response.
+void choose_and_enter_method(const core::Capture& capture,
+                             PreparedCapture& prepared,
+                             Reconstruction& result) {
+    ReconstructSettings& settings = result.settings;
+    if (!settings.solver.spot_m) {
+        settings.solver.spot_m = core::recorded_spot_m(capture).value_or(0.0);
+    }
+    ReconstructSettings with_response = settings;
+    if (settings.method == Method::Auto && !core::is_stated(settings.response)) {
+        with_response.response = core::recorded_response(capture).value_or(settings.response);
+    }
+    const MethodChoice choice = choose_method(with_response, prepared);
+    settings.method = choice.method;
+    if (traits_of(settings).explains_response) settings.response = with_response.response;
+    result.method = core::enum_name(choice.method);
+    result.reason = choice.reason;
 }
 
+/// Fills in merge_bins, ambient and, where a method has it, snr, and says what becomes of the
+/// histograms.
 PreparationPlan choose_preparation(const PreparedCapture& prepared, ReconstructSettings& settings) {
     const core::TimeAxis& axis = prepared.time_axis;
     const bool is_counts = prepared.unit == core::TransientUnit::Counts;
@@ -106,9 +136,14 @@ PreparationPlan choose_preparation(const PreparedCapture& prepared, ReconstructS
             plan.ambient_per_bin.assign(prepared.scan.num_pairs(), *settings.noise_floor);
         }
     }
-    if (settings.method != Method::Solver) plan.deconvolution = deconvolution_of(settings, axis);
-    const bool has_filter = settings.method == Method::Dlct || settings.method == Method::Lct;
-    if (has_filter && !settings.snr) {
+    const MethodTraits& method = traits_of(settings);
+    if (!method.explains_response && core::is_stated(settings.response)) {
+        plan.deconvolution =
+            std::make_shared<const ResponseDeconvolution>(response_filter(settings, axis),
+                                                          static_cast<std::size_t>(axis.num_bins),
+                                                          settings.response_floor);
+    }
+    if (method.has_wiener_filter && !settings.snr) {
         settings.snr =
             is_counts
                 ? wiener_snr(prepared.scan, axis, prepared.transient(), plan, settings.falloff)
@@ -117,28 +152,46 @@ PreparationPlan choose_preparation(const PreparedCapture& prepared, ReconstructS
     return plan;
 }
 
+/// What the method explains of the histograms instead of having it taken off.
+///
+/// axis   of the prepared histograms
+/// plan   its ambient light moves here
 Measurement take_measurement(const PreparedCapture& prepared,
                              const ReconstructSettings& settings,
                              const core::TimeAxis& axis,
                              PreparationPlan& plan) {
+    const MethodTraits& method = traits_of(settings);
     Measurement measurement;
     measurement.is_counts = prepared.unit == core::TransientUnit::Counts;
-    measurement.background_per_bin = std::exchange(plan.ambient_per_bin, {});
-    for (double& value : measurement.background_per_bin) value *= plan.merge_bins;
-    if (core::is_stated(settings.response)) {
-        measurement.response = core::sample_response(
-            core::make_response(settings.response, "response"), axis.bin_width_m);
+    if (method.explains_background) {
+        measurement.background_per_bin = std::exchange(plan.ambient_per_bin, {});
+        for (double& value : measurement.background_per_bin) value *= plan.merge_bins;
     }
+    if (method.explains_response) measurement.response = response_filter(settings, axis);
     return measurement;
 }
 
-void choose_axes(const core::WallScan& scan,
-                 const core::TimeAxis& axis,
-                 const WallFrame& wall,
-                 ReconstructSettings& settings,
-                 VolumeAxes& axes) {
+/// Fills the wavelength in; bins can tell no shorter ones from longer ones.
+void choose_wavelength(const PreparedCapture& prepared,
+                       const core::TimeAxis& axis,
+                       PhasorSettings& phasor) {
+    if (!phasor.wavelength_m) {
+        phasor.wavelength_m = default_wavelength_m(prepared.scan, prepared.wall, axis);
+    }
+    if (*phasor.wavelength_m < axis.bin_width_m) {
+        throw core::Error("phasor.wavelength_m",
+                          fmt::format("found {:.3g} m", *phasor.wavelength_m),
+                          fmt::format("must be at least a bin, {:.3g} m", axis.bin_width_m));
+    }
+}
+
+/// Columns at the scan's points or evenly over its footprint, depths at the bins' ranges.
+VolumeAxes choose_axes(const PreparedCapture& prepared,
+                       const core::TimeAxis& axis,
+                       ReconstructSettings& settings) {
+    const WallFrame& wall = prepared.wall;
     VolumeSettings& volume = settings.volume;
-    if (!volume.z_range_m) volume.z_range_m = default_z_range(scan, axis);
+    if (!volume.z_range_m) volume.z_range_m = default_z_range(prepared.scan, axis);
     const double depth = (*volume.z_range_m)[1] - (*volume.z_range_m)[0];
     std::array<double, 2> low = wall.min_m;
     std::array<double, 2> high = wall.max_m;
@@ -163,27 +216,66 @@ void choose_axes(const core::WallScan& scan,
             static_cast<int>(std::clamp(std::round(depth / step), 1.0, double{kMaxVoxelsPerAxis}))};
     }
     const auto [nx, ny, nz] = *volume.voxels;
-    axes.x_m = cell_centers(low[0], high[0], static_cast<std::size_t>(nx));
-    axes.y_m = cell_centers(low[1], high[1], static_cast<std::size_t>(ny));
-    axes.z_m =
-        cell_centers((*volume.z_range_m)[0], (*volume.z_range_m)[1], static_cast<std::size_t>(nz));
-    axes.world_from_wall = wall.world_from_wall;
+    const auto [near_m, far_m] = *volume.z_range_m;
+    return {cell_centers(low[0], high[0], static_cast<std::size_t>(nx)),
+            cell_centers(low[1], high[1], static_cast<std::size_t>(ny)),
+            cell_centers(near_m, far_m, static_cast<std::size_t>(nz)),
+            wall.world_from_wall};
 }
 
-MethodChoice choose_and_enter_method(const core::Capture& capture,
-                                     ReconstructSettings& settings,
-                                     PreparedCapture& prepared) {
-    if (!settings.solver.spot_m) {
-        settings.solver.spot_m = core::recorded_spot_m(capture).value_or(0.0);
+void append(std::vector<std::string> more, std::vector<std::string>& texts) {
+    std::ranges::move(more, std::back_inserter(texts));
+}
+
+std::vector<std::string> warnings_of(const core::Capture& capture,
+                                     const ReconstructionPlan& plan,
+                                     const ReconstructSettings& settings) {
+    std::vector<std::string> warnings = capture_warnings(capture);
+    append(core::detector_warnings(capture, settings.response), warnings);
+    if (auto text = unobserved_warning(settings, plan.observed, plan.time_axis.num_bins)) {
+        warnings.push_back(std::move(*text));
     }
-    ReconstructSettings with_response = settings;
-    if (settings.method == Method::Auto && !core::is_stated(settings.response)) {
-        with_response.response = core::recorded_response(capture).value_or(settings.response);
+    if (auto text = few_pairs_warning(plan.prepared.scan)) warnings.push_back(std::move(*text));
+    return warnings;
+}
+
+}  // namespace
+
+ReconstructionPlan choose(const core::Capture& capture, Reconstruction& result) {
+    ReconstructSettings& settings = result.settings;
+    if (settings.prior == Prior::Tv &&
+        (settings.method == Method::Auto || traits_of(settings).gives_way_to_prior)) {
+        settings.method = kStatisticalMethod.method;
     }
-    MethodChoice choice = choose_method(with_response, prepared);
-    if (choice.method == Method::Solver) settings.response = with_response.response;
-    settings.method = choice.method;
-    return choice;
+    const bool is_auto = settings.method == Method::Auto;
+    settings.response = core::resolve_response(settings.response, capture, "response");
+    if (is_auto) leave_out_direct_return(capture, result);
+
+    ReconstructionPlan plan;
+    plan.prepared = crop_capture(capture, settings.crop);
+    choose_and_enter_method(capture, plan.prepared, result);
+    plan.preparation = choose_preparation(plan.prepared, settings);
+    plan.time_axis = plan.prepared.time_axis;
+    plan.time_axis.bin_width_m *= plan.preparation.merge_bins;
+    plan.time_axis.num_bins = plan.preparation.num_bins;
+    plan.observed = prepared_observed(plan.preparation);
+    core::simplify(plan.observed, plan.time_axis.num_bins);
+    if (is_auto) {
+        plan.falloff_trial = FalloffTrial::Always;
+        append(survey_capture(plan.prepared, plan.preparation, settings), result.findings);
+    }
+    plan.measurement = take_measurement(plan.prepared, settings, plan.time_axis, plan.preparation);
+    if (traits_of(settings).propagates_wave) {
+        choose_wavelength(plan.prepared, plan.time_axis, settings.phasor);
+        // A confocal scan lights every voxel from all over the wall; there the factor would only
+        // let far wall points outvote near ones.
+        if (!plan.prepared.scan.is_confocal()) {
+            plan.range_power = falloff_power(settings.falloff);
+        }
+    }
+    plan.axes = choose_axes(plan.prepared, plan.time_axis, settings);
+    result.warnings = warnings_of(capture, plan, settings);
+    return plan;
 }
 
 }  // namespace nlos

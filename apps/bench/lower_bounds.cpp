@@ -3,7 +3,6 @@
 
 #include "nlos/fourier/even_transform.h"
 #include "nlos/fourier/padded_plane.h"
-#include "nlos/methods/light_cone.h"
 #include "nlos/methods/methods.h"
 #include "renderer/core/process.h"
 #include "renderer/core/random.h"
@@ -28,10 +27,19 @@ double time_of(std::size_t count, Work&& work) {
     return core::cpu_seconds() - start;
 }
 
-double row_seconds(const Fft& fft, std::size_t length, std::size_t rows) {
+/// Real transforms in batches, or complex ones one by one.
+double row_seconds(const nlos::LeastWork& work) {
+    const std::size_t length = work.row_length;
+    if (length == 0) return 0.0;
+    const Fft forward = Fft::real_to_complex(length, kRows);
+    const Fft inverse = Fft::complex_to_real(length, kRows);
+    const Fft complex = Fft::complex_batch(length, 1, {1, length}, Fft::Direction::Inverse);
     FftBuffer from(kRows * Fft::row_floats(length));
     FftBuffer to(from.num_floats());
-    return time_of((rows + kRows - 1) / kRows, [&] { fft.run(from, to); });
+    FftBuffer column(2 * length);
+    return time_of((work.rows_forward + kRows - 1) / kRows, [&] { forward.run(from, to); }) +
+           time_of((work.rows_inverse + kRows - 1) / kRows, [&] { inverse.run(from, to); }) +
+           time_of(work.complex_rows, [&] { complex.run(column); });
 }
 
 std::array<std::size_t, 2> padded_size(const nlos::WallGrid& grid) {
@@ -56,52 +64,6 @@ double kernel_quadrant_seconds(const nlos::WallGrid& grid, std::size_t count) {
     return time_of(count, [&] { transform.run(quadrant.data(), work); });
 }
 
-/// The light-cone transforms' FFTs: every wall point along squared range and its `components` back,
-/// every frequency there and its components back laterally, every frequency's kernel and, for more
-/// than one component, each one's moment of it.
-double light_cone_fft_seconds(const nlos::MethodInput& input, std::size_t components) {
-    const nlos::Cone cone = nlos::make_cone(input, 2);
-    const nlos::WallGrid& grid = *input.wall.grid;
-    const std::size_t frequencies = cone.num_frequencies();
-    const auto back = Fft::complex_to_real(cone.length, kRows);
-    double seconds =
-        row_seconds(Fft::real_to_complex(cone.length, kRows), cone.length, cone.num_columns()) +
-        row_seconds(back, cone.length, components * cone.num_columns()) +
-        plane_seconds(grid.size, grid, frequencies, components * frequencies) +
-        kernel_quadrant_seconds(grid, frequencies);
-    if (components > 1) {
-        seconds += plane_seconds(padded_size(grid), grid, components * frequencies, 0);
-    }
-    return seconds;
-}
-
-/// Those of f-k migration: every wall point along range, every frequency laterally, every lateral
-/// frequency along depth, every depth back laterally.
-double fk_fft_seconds(const nlos::MethodInput& input) {
-    const nlos::WallGrid& grid = *input.wall.grid;
-    const auto bins = static_cast<std::size_t>(input.time_axis.num_bins);
-    const std::size_t length = 2 * nlos::good_fft_size(bins);
-    const auto [px, py] = padded_size(grid);
-    FftBuffer column(2 * length);
-    const Fft depth = Fft::complex_batch(length, 1, {1, length}, Fft::Direction::Inverse);
-    return row_seconds(Fft::real_to_complex(length, kRows), length, grid.size[0] * grid.size[1]) +
-           plane_seconds(grid.size, grid, length / 2 + 1, input.axes.z_m.size()) +
-           time_of(px * py, [&] { depth.run(column); });
-}
-
-/// Those of the phasor field: for every depth and frequency the kernel and one plane back.
-double phasor_fft_seconds(const nlos::MethodInput& input, const nlos::PhasorSettings& settings) {
-    const nlos::PhasorTransforms transforms = nlos::phasor_transforms(input, settings);
-    const bool is_confocal = input.scan.is_confocal();
-    const nlos::WallGrid& grid = *input.wall.grid;
-    // Confocal frequencies add up before the way back.
-    return plane_seconds(grid.size,
-                         grid,
-                         transforms.wall,
-                         is_confocal ? input.axes.z_m.size() : transforms.planes) +
-           kernel_quadrant_seconds(grid, transforms.planes);
-}
-
 /// Two multiply-adds for every pair of histogram and voxel.
 double multiply_add_seconds(double pairs) {
     constexpr std::size_t kCount = 4096;
@@ -120,6 +82,15 @@ double multiply_add_seconds(double pairs) {
     return seconds * pairs / (static_cast<double>(runs) * kCount);
 }
 
+double seconds_of(const nlos::LeastWork& work, const nlos::WallFrame& wall) {
+    const double seconds = row_seconds(work) + multiply_add_seconds(work.multiply_adds);
+    if (!wall.grid) return seconds;
+    const nlos::WallGrid& grid = *wall.grid;
+    return seconds + plane_seconds(grid.size, grid, work.planes_forward, work.planes_inverse) +
+           plane_seconds(padded_size(grid), grid, work.filled_planes, 0) +
+           kernel_quadrant_seconds(grid, work.even_planes);
+}
+
 }  // namespace
 
 double reconstruction_limit_seconds(const core::Capture& capture,
@@ -134,24 +105,8 @@ double reconstruction_limit_seconds(const core::Capture& capture,
                                   done.volume.axes,
                                   *settings.volume.z_range_m,
                                   progress};
-    switch (settings.method) {
-        case nlos::Method::Lct:
-            return light_cone_fft_seconds(input, 1);
-        case nlos::Method::Dlct:
-            return light_cone_fft_seconds(input, 3);
-        case nlos::Method::Fk:
-            return fk_fft_seconds(input);
-        case nlos::Method::Phasor:
-            return phasor_fft_seconds(input, settings.phasor);
-        case nlos::Method::Bp:
-        case nlos::Method::Fbp:
-            return multiply_add_seconds(static_cast<double>(capture.scan.num_pairs()) *
-                                        static_cast<double>(input.axes.num_voxels()));
-        case nlos::Method::Auto:
-        case nlos::Method::Solver:
-            break;
-    }
-    return 0.0;
+    const nlos::MethodTraits& method = nlos::traits_of(settings);
+    return method.least_work ? seconds_of(method.least_work(input, settings), wall) : 0.0;
 }
 
 double shadow_ray_seconds(const renderer::Scene& scene, const core::WallScan& scan) {

@@ -4,8 +4,12 @@
 #include "apps/commands/reconstruct_job.h"
 #include "apps/outcome.h"
 #include "apps/terminal.h"
+#include "nlos/methods/methods.h"
 #include "renderer/core/parallel.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 
 namespace apps {
@@ -17,6 +21,15 @@ struct ReconstructArguments {
 };
 
 constexpr std::array kReconstructShorthands{Shorthand{"--method", "method", "NAME", "Method"}};
+
+/// The list of methods, for help.
+std::string method_meanings() {
+    std::string text = "reconstruction method; auto: by what the capture holds";
+    for (const nlos::MethodTraits* method : nlos::kMethods) {
+        text += fmt::format("; {}: {}", core::enum_name(method->method), method->meaning);
+    }
+    return text;
+}
 
 void run(const ReconstructArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
@@ -46,6 +59,8 @@ void run(const ReconstructArguments& arguments) {
 void declare_reconstruct(Command& command) {
     auto& arguments = command.runs<ReconstructArguments>(run);
     command.settings = core::settings_help(ReconstructOptions{});
+    std::ranges::find(command.settings, "method", &core::SettingHelp::key)->meaning =
+        method_meanings();
     add_file_option(command,
                     "CAPTURE",
                     arguments.request.captures,

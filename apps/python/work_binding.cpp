@@ -75,9 +75,11 @@ nlos::Reconstruction reconstruct(const core::Capture& capture,
             calib::applied_calibration(json_from_python(calibration, "calibration"), "calibration");
     }
     return run_long(progress, threads, [&](const core::Progress& report) {
-        core::validate(capture, "capture");
         std::optional<core::Capture> calibrated;
-        if (applied) calibrated = calib::apply_calibration(*applied, capture);
+        if (applied) {
+            core::validate(capture, "capture");
+            calibrated = calib::apply_calibration(*applied, capture);
+        }
         nlos::Reconstruction result =
             nlos::reconstruct(calibrated ? *calibrated : capture, settings, report);
         result.provenance =

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/methods/backprojection.h"
 
-#include "nlos/methods/methods.h"
 #include "nlos/methods/slabs.h"
 #include "renderer/core/large_memory.h"
 
@@ -90,5 +89,24 @@ double backproject_bytes(const MethodInput& input,
         static_cast<double>(input.scan.illumination.size() + input.scan.sensing.size());
     return volume + points * (4096.0 * core::thread_count() + 64.0);
 }
+
+LeastWork least_backprojection_work(const MethodInput& input,
+                                    const ReconstructSettings& /*settings*/) {
+    return {.multiply_adds = static_cast<double>(input.scan.num_pairs()) *
+                             static_cast<double>(input.axes.num_voxels())};
+}
+
+const MethodTraits kBp{.method = Method::Bp,
+                       .meaning = "backprojection",
+                       .captures = "all, walls of any shape",
+                       .run = backproject,
+                       .bytes = backproject_bytes,
+                       .errors = {{.model_fraction = 0.042,
+                                   .noise_fraction = 0.45,
+                                   .doubt = 5.0,
+                                   .plateau = {0.0, 0.75, 7.0}},  // leaves no edges
+                                  {0.0, 0.75, 7.0}},
+                       .explains_gaps = true,
+                       .least_work = least_backprojection_work};
 
 }  // namespace nlos

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/methods/method_input.h"
+#include "nlos/methods/methods.h"
 #include "nlos/preparation/wall_frame.h"
-#include "nlos/reconstruction/reconstruct_settings.h"
 
 #include <cstddef>
 #include <optional>
@@ -11,6 +10,29 @@
 #include <vector>
 
 namespace nlos {
+
+/// Backprojection: v(p) = sum over pairs (l, s) of H(l, s; |l - p| + |p - s|), linear in time
+/// between bin centres. Adjoint of a forward model without cosines, and without falloff unless each
+/// term is multiplied by what the light lost on its way. Where some bins were not observed, sums
+/// are divided by the share of their terms that was, see divide_by_observed_share().
+///
+/// input      any scan; confocal grids whose y positions share a lattice with the voxels' take the
+///            fast way (shifted additions of whole rows), all others the general one
+/// settings   compensation, the factor of each term: none, r_l^2 r_s^2 (diffuse), r_l r_s (retro)
+/// slabs      of the wall's rows, which the fast way copies
+/// returns    sums in the histograms' unit
+/// source     [Velten2012]
+MethodTraits::Run backproject;
+MethodTraits::Bytes backproject_bytes;
+
+/// Magnitude of the backprojection of histograms convolved with the phasor field's virtual wave,
+/// and divided by the observed share as in backproject(). Settings: phasor, whose wavelength_m must
+/// be set. Source: [Liu2019].
+MethodTraits::Run phasor_backprojection;
+MethodTraits::Bytes phasor_backprojection_bytes;
+
+/// Two multiply-adds for every histogram and voxel.
+LeastWork least_backprojection_work(const MethodInput& input, const ReconstructSettings& settings);
 
 /// Confocal measurements on a wall grid.
 template <class Real>

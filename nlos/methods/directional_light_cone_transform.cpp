@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: MIT
+// Directional light-cone transform [Young2020]: albedo and normals of the hidden surface. The light
+// from a surface of normal n is taken as rho (n . d) / r^gamma, d pointing from the wall to the
+// surface, which is linear in the field rho n: three convolutions, one per component, undone
+// together by a Wiener filter. Surfaces whose light carries further cosines come out tilted.
+//
+// Settings: snr, and falloff, whose power is gamma. Slabs as in the light-cone transform. The
+// volume is |rho n| per metre of depth, up to a common factor, 0 where it faces away from the wall,
+// with a normal towards the wall for each column, at its brightest voxel.
 #include "nlos/fourier/padded_plane.h"
 #include "nlos/methods/light_cone.h"
-#include "nlos/methods/methods.h"
 #include "renderer/core/large_memory.h"
 
 #include <cmath>
@@ -168,8 +175,6 @@ Eigen::Vector3f normal_at_peak(const float* albedo,
     return -sum.normalized();
 }
 
-}  // namespace
-
 Volume directional_light_cone_transform(const MethodInput& input,
                                         const ReconstructSettings& settings,
                                         std::size_t num_slabs) {
@@ -240,5 +245,28 @@ double directional_light_cone_transform_bytes(const MethodInput& input,
     return spectra + volumes +
            (66.0 * padded + 128.0 * static_cast<double>(cone.length)) * core::thread_count();
 }
+
+/// Beside those of three components, each one's moment of every frequency's kernel.
+LeastWork least_dlct_work(const MethodInput& input, const ReconstructSettings& /*settings*/) {
+    LeastWork work = least_cone_work(input, 3);
+    work.filled_planes = 3 * work.planes_forward;
+    return work;
+}
+
+}  // namespace
+
+const MethodTraits kDlct{.method = Method::Dlct,
+                         .meaning = "directional light-cone transform: albedo and normals",
+                         .captures = "confocal, planar grid; others by midpoints",
+                         .run = directional_light_cone_transform,
+                         .bytes = directional_light_cone_transform_bytes,
+                         .errors = {{.model_fraction = 0.047,
+                                     .noise_fraction = 0.48,
+                                     .doubt = 5.5,
+                                     .plateau = {0.0, 0.52, 5.0}},
+                                    {}},
+                         .needs = &kConfocalGrid,
+                         .has_wiener_filter = true,
+                         .least_work = least_dlct_work};
 
 }  // namespace nlos

@@ -1,4 +1,19 @@
 // SPDX-License-Identifier: MIT
+// f-k migration: a confocal scan of a plane is the wave field, at the plane, of a wave that starts
+// everywhere on the hidden surface at once and travels with one metre of range per metre. Its
+// spectrum is moved from (kx, ky, f) to (kx, ky, kz) with f^2 = kx^2 + ky^2 + kz^2, which gives
+// the field at the start.
+//
+// That wave, of amplitude f at the start, is d/dr (r M) at range r, M being the mean of f over the
+// sphere of that radius. What is measured is the sum of f / r^4 over the sphere on diffuse
+// surfaces and of f / r^2 on retroreflecting ones: times r^3 or r, and derived along range, it is
+// the wave. [Lindell2019] takes the root of what is measured for it. But light of several surfaces
+// adds up, its root does not, so that they blur each other's depths; and without the derivative a
+// haze of low frequencies lies about them.
+//
+// Settings: falloff. Slabs of |kx|; each repeats the lateral transforms. The volume is the field up
+// to a common factor, 0 where it is negative. Its magnitude, often shown instead, is an envelope
+// along z: wider, and its peaks lie farther from the surface.
 #include "nlos/fourier/fft.h"
 #include "nlos/fourier/padded_plane.h"
 #include "nlos/fourier/plane_rows.h"
@@ -280,8 +295,6 @@ FftBuffer migrate(const MethodInput& input,
     return field;
 }
 
-}  // namespace
-
 Volume fk_migration(const MethodInput& input,
                     const ReconstructSettings& settings,
                     std::size_t num_slabs) {
@@ -351,5 +364,35 @@ double fk_migration_bytes(const MethodInput& input,
         8.0 * (2.0 * plane + lines + columns) + 4.0 * columns * kPlanesPerBlock;
     return field + amplitudes + std::max(spectrum, volume) + per_thread * core::thread_count();
 }
+
+/// Every wall point along range, every frequency laterally, every lateral frequency along depth,
+/// every depth back laterally.
+LeastWork least_fk_work(const MethodInput& input, const ReconstructSettings& /*settings*/) {
+    const FkGrids grids = make_grids(input);
+    LeastWork work;
+    work.row_length = grids.length;
+    work.rows_forward = grids.num_columns();
+    work.complex_rows = grids.px * grids.py;
+    work.planes_forward = grids.num_frequencies();
+    work.planes_inverse = grids.num_z;
+    return work;
+}
+
+}  // namespace
+
+const MethodTraits kFk{.method = Method::Fk,
+                       .meaning = "f-k migration",
+                       .captures = "confocal, planar grid; others by midpoints",
+                       .run = fk_migration,
+                       .bytes = fk_migration_bytes,
+                       .errors = {{.model_fraction = 0.044,
+                                   .noise_fraction = 0.345,
+                                   .doubt = 8.0,
+                                   .near_fraction = 0.27,
+                                   .plateau = {0.0, 0.5, 8.0},
+                                   .front = 0.4},
+                                  {0.7, 0.3, 8.0}},
+                       .needs = &kConfocalGrid,
+                       .least_work = least_fk_work};
 
 }  // namespace nlos

@@ -252,4 +252,16 @@ void add_spectrum_to_depth(const MethodInput& input,
         });
 }
 
+LeastWork least_cone_work(const MethodInput& input, std::size_t components) {
+    const Cone cone = make_cone(input, kSquaredRangeBinsPerBin);
+    LeastWork work;
+    work.row_length = cone.length;
+    work.rows_forward = cone.num_columns();
+    work.rows_inverse = components * cone.num_columns();
+    work.planes_forward = cone.num_frequencies();
+    work.planes_inverse = components * cone.num_frequencies();
+    work.even_planes = cone.num_frequencies();
+    return work;
+}
+
 }  // namespace nlos

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/fourier/fft.h"
-#include "nlos/methods/method_input.h"
+#include "nlos/methods/methods.h"
 #include "nlos/methods/slabs.h"
 #include "nlos/preparation/conservative_resampling.h"
 
@@ -144,5 +144,9 @@ void add_spectrum_to_depth(const MethodInput& input,
                            const Slab& slab,
                            std::vector<float>& values,
                            const ProgressSpan& span);
+
+/// Every wall point along squared range and its `components` back, every frequency there and its
+/// components back laterally, and every frequency's kernel.
+LeastWork least_cone_work(const MethodInput& input, std::size_t components);
 
 }  // namespace nlos

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: MIT
+// Light-cone transform [OToole2018]: with v = (path length / 2)^2 a confocal scan of a plane is a
+// convolution of the hidden albedo, undone by a Wiener filter in the frequency domain. Depths
+// between voxel edges are kept by moving bin contents by overlap; cosines are not modelled;
+// negative albedo is set to zero.
+//
+// Settings: falloff and snr. Slabs of frequencies; the transforms along time are repeated for each.
+// The volume is the albedo per metre of depth, up to a common factor.
 #include "nlos/fourier/even_transform.h"
 #include "nlos/fourier/padded_plane.h"
 #include "nlos/methods/light_cone.h"
-#include "nlos/methods/methods.h"
 #include "renderer/core/large_memory.h"
 
 namespace nlos {
@@ -68,8 +74,6 @@ class SlabFilter {
     EvenTransform kernel_transform_;
 };
 
-}  // namespace
-
 Volume light_cone_transform(const MethodInput& input,
                             const ReconstructSettings& settings,
                             std::size_t num_slabs) {
@@ -111,5 +115,26 @@ double light_cone_transform_bytes(const MethodInput& input,
     const double per_thread = 30.0 * padded + 128.0 * static_cast<double>(cone.length + 2);
     return spectrum + volume + per_thread * core::thread_count() + 16.0 * padded;
 }
+
+LeastWork least_lct_work(const MethodInput& input, const ReconstructSettings& /*settings*/) {
+    return least_cone_work(input, 1);
+}
+
+}  // namespace
+
+const MethodTraits kLct{.method = Method::Lct,
+                        .meaning = "light-cone transform with a Wiener filter",
+                        .captures = "confocal, planar grid; others by midpoints",
+                        .run = light_cone_transform,
+                        .bytes = light_cone_transform_bytes,
+                        .errors = {{.model_fraction = 0.025,
+                                    .noise_fraction = 0.34,
+                                    .doubt = 16.0,
+                                    .plateau = {0.0, 0.52, 5.0}},
+                                   {}},
+                        .needs = &kConfocalGrid,
+                        .has_wiener_filter = true,
+                        .gives_way_to_prior = true,
+                        .least_work = least_lct_work};
 
 }  // namespace nlos

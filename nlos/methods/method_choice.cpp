@@ -2,18 +2,13 @@
 #include "nlos/methods/methods.h"
 #include "renderer/core/error.h"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <vector>
 
 namespace nlos {
 namespace {
-
-constexpr std::size_t kMinPhasorPoints = 4;
-
-bool is_confocal_method(Method method) {
-    return method == Method::Lct || method == Method::Fk || method == Method::Dlct;
-}
 
 std::string name_of(core::ScanPattern pattern) {
     switch (pattern) {
@@ -27,41 +22,47 @@ std::string name_of(core::ScanPattern pattern) {
     return "a confocal scan";
 }
 
-std::string why_too_few_bins(const PreparedCapture& prepared) {
-    if (prepared.time_axis.num_bins >= kMinBins) return "";
-    return fmt::format("a time axis of {} bins", prepared.time_axis.num_bins);
-}
-
-/// Empty when methods for confocal grids can serve, else what stands in their way.
-std::string why_no_confocal_method(const PreparedCapture& prepared, const VolumeSettings& volume) {
-    if (prepared.scan.pattern != core::ScanPattern::Confocal) {
+std::string why_no_confocal_grid(const PreparedCapture& prepared, const VolumeSettings& volume) {
+    if (!prepared.scan.is_confocal()) {
         return name_of(prepared.scan.pattern);
     }
     const WallFrame& wall = prepared.wall;
     if (!wall.grid) return wall.why_no_grid;
     const auto [nx, ny] = wall.grid->size;
-    if (volume.voxels && (static_cast<std::size_t>((*volume.voxels)[0]) != nx ||
-                          static_cast<std::size_t>((*volume.voxels)[1]) != ny)) {
-        return fmt::format("volume.voxels of {} x {} for a scan of {} x {}",
-                           (*volume.voxels)[0],
-                           (*volume.voxels)[1],
-                           nx,
-                           ny);
+    if (!volume.voxels || (static_cast<std::size_t>((*volume.voxels)[0]) == nx &&
+                           static_cast<std::size_t>((*volume.voxels)[1]) == ny)) {
+        return "";
     }
-    return why_too_few_bins(prepared);
+    return fmt::format("volume.voxels of {} x {} for a scan of {} x {}",
+                       (*volume.voxels)[0],
+                       (*volume.voxels)[1],
+                       nx,
+                       ny);
 }
 
-/// Empty when the phasor field can serve.
-std::string why_no_phasor(const PreparedCapture& prepared) {
-    const std::size_t points = prepared.scan.sensing.size();
-    if (points < kMinPhasorPoints) return fmt::format("{} sensing points", points);
-    return why_too_few_bins(prepared);
+/// What stands in a method's way; empty: nothing.
+std::string obstacle_to(const MethodTraits& method,
+                        const PreparedCapture& prepared,
+                        const VolumeSettings& volume) {
+    if (!method.needs) return "";
+    std::string obstacle = method.needs->obstacle(prepared, volume);
+    if (!obstacle.empty() || prepared.time_axis.num_bins >= kMinBins) return obstacle;
+    return fmt::format("a time axis of {} bins", prepared.time_axis.num_bins);
 }
 
-/// The best method that serves without conversion.
-Method best_method(const PreparedCapture& prepared, const VolumeSettings& volume) {
-    if (why_no_confocal_method(prepared, volume).empty()) return Method::Lct;
-    return why_no_phasor(prepared).empty() ? Method::Phasor : Method::Bp;
+/// The first of kPreferredMethods that serves without conversion, and what stands in the way of
+/// those before it.
+MethodChoice preferred_method(const PreparedCapture& prepared, const VolumeSettings& volume) {
+    MethodChoice choice{};
+    std::string last;
+    for (const MethodTraits* method : kPreferredMethods) {
+        choice.method = method->method;
+        const std::string obstacle = obstacle_to(*method, prepared, volume);
+        if (obstacle.empty()) break;
+        if (obstacle != last) choice.reason += (last.empty() ? "" : ", ") + obstacle;
+        last = obstacle;
+    }
+    return choice;
 }
 
 /// What a method that explains its data does better with than a direct inversion; empty: nothing.
@@ -73,69 +74,77 @@ std::string why_statistical(const ReconstructSettings& settings, const PreparedC
 
 MethodChoice choose_automatically(const ReconstructSettings& settings,
                                   const PreparedCapture& prepared) {
-    const Method method = best_method(prepared, settings.volume);
-    if (method == Method::Lct) {
-        const std::string noise = why_statistical(settings, prepared);
-        if (!noise.empty())
-            return {Method::Solver, "confocal scan on an even planar grid, " + noise};
-        return {method, "confocal scan on an even planar grid"};
-    }
-    const std::string no_lct = why_no_confocal_method(prepared, settings.volume);
-    if (method == Method::Phasor) return {method, no_lct};
-    const std::string no_phasor = why_no_phasor(prepared);
-    return {method, no_lct == no_phasor ? no_lct : no_lct + ", " + no_phasor};
+    MethodChoice choice = preferred_method(prepared, settings.volume);
+    if (!choice.reason.empty()) return choice;
+    choice.reason = traits_of(choice.method).needs->met;
+    const std::string unexplained = why_statistical(settings, prepared);
+    if (unexplained.empty()) return choice;
+    return {kStatisticalMethod.method, choice.reason + ", " + unexplained};
 }
 
-}  // namespace
-
-MethodChoice choose_method(const ReconstructSettings& settings, PreparedCapture& prepared) {
-    if (settings.method == Method::Auto) return choose_automatically(settings, prepared);
-    const std::string name(core::enum_name(settings.method));
-    const std::string other(core::enum_name(best_method(prepared, settings.volume)));
-    if (is_confocal_method(settings.method)) {
-        if (prepared.scan.pattern != core::ScanPattern::Confocal) {
-            convert_to_confocal(prepared);
-        }
-        const std::string obstacle = why_no_confocal_method(prepared, settings.volume);
-        if (!obstacle.empty()) {
-            throw core::Error(
-                "method=" + name,
-                "found " + obstacle,
-                fmt::format("{} needs a scan on an even planar grid, confocal or convertible, "
-                            "voxel columns at its points and at least {} bins; method={} works "
-                            "for this capture",
-                            name,
-                            kMinBins,
-                            other));
-        }
+/// The methods of which something holds, as in "method=bp, fbp, solver".
+std::string methods_that(bool MethodTraits::*holds) {
+    std::vector<std::string_view> names;
+    for (const MethodTraits* method : kMethods) {
+        if (method->*holds) names.push_back(core::enum_name(method->method));
     }
-    if (settings.method == Method::Phasor && !why_no_phasor(prepared).empty()) {
-        throw core::Error("method=phasor",
-                          "found " + why_no_phasor(prepared),
-                          fmt::format("phasor needs at least {} sensing points and {} bins; "
-                                      "method={} works for this capture",
-                                      kMinPhasorPoints,
+    return fmt::format("method={}", fmt::join(names, ", "));
+}
+
+/// Checks that the method set can serve, once the capture is what it needs.
+MethodChoice check_method(const ReconstructSettings& settings, PreparedCapture& prepared) {
+    const MethodTraits& method = traits_of(settings.method);
+    const Method other = preferred_method(prepared, settings.volume).method;
+    if (method.needs && method.needs->takes_other_patterns && !prepared.scan.is_confocal()) {
+        convert_to_confocal(prepared);
+    }
+    const std::string obstacle = obstacle_to(method, prepared, settings.volume);
+    if (!obstacle.empty()) {
+        throw core::Error(fmt::format("method={}", core::enum_name(settings.method)),
+                          "found " + obstacle,
+                          fmt::format("{} needs {} and at least {} bins; method={} works for this "
+                                      "capture",
+                                      core::enum_name(settings.method),
+                                      method.needs->text,
                                       kMinBins,
-                                      other));
+                                      core::enum_name(other)));
     }
     return {settings.method,
             prepared.conversion.empty() ? "as set" : "as set; " + prepared.conversion};
 }
 
+}  // namespace
+
+const MethodNeeds kConfocalGrid{
+    .text = "a scan on an even planar grid, confocal or convertible, voxel columns at its points",
+    .met = "confocal scan on an even planar grid",
+    .takes_other_patterns = true,
+    .obstacle = why_no_confocal_grid};
+
+MethodChoice choose_method(const ReconstructSettings& settings, PreparedCapture& prepared) {
+    MethodChoice choice = settings.method == Method::Auto ? choose_automatically(settings, prepared)
+                                                          : check_method(settings, prepared);
+    core::require(settings.falloff != Falloff::Facing || traits_of(choice.method).knows_facing,
+                  "falloff",
+                  fmt::format("facing with method {}", core::enum_name(choice.method)),
+                  fmt::format("diffuse or retro; {} knows facing",
+                              methods_that(&MethodTraits::knows_facing)));
+    return choice;
+}
+
 std::optional<std::string> unobserved_warning(const ReconstructSettings& settings,
                                               const core::ObservedBins& observed,
                                               int num_bins) {
-    const bool works_by_transforms =
-        settings.method == Method::Phasor || is_confocal_method(settings.method);
-    if (!observed || !works_by_transforms) return std::nullopt;
+    if (!observed || traits_of(settings.method).explains_gaps) return std::nullopt;
     const auto partial = std::ranges::count_if(
         *observed, [&](const core::BinRange& range) { return range.size() < num_bins; });
     return fmt::format(
-        "{} of {} histograms have bins that were not observed, which {} takes for dark; solver, bp "
-        "and fbp leave them out",
+        "{} of {} histograms have bins that were not observed, which {} takes for dark; {} leave "
+        "them out",
         partial,
         observed->size(),
-        core::enum_name(settings.method));
+        core::enum_name(settings.method),
+        methods_that(&MethodTraits::explains_gaps));
 }
 
 std::optional<std::string> few_pairs_warning(const core::WallScan& scan) {

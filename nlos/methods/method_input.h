@@ -42,7 +42,7 @@ struct MethodInput {
     /// work by transforms take for darkness.
     const std::vector<core::BinRange>* observed = nullptr;
     double unobserved_before_m = 0.0;  ///< path length cut off before the axis: nobody looked there
-    Measurement measurement = {};      ///< for Method::Solver; all others get it taken off
+    Measurement measurement = {};      ///< what the method explains of it itself
 };
 
 /// Fewest bins from which frequency-domain methods make sense.

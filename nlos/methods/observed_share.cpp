@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/methods/backprojection.h"
-#include "nlos/methods/methods.h"
 
 #include <algorithm>
 

@@ -1,10 +1,24 @@
 // SPDX-License-Identifier: MIT
+// Phasor field [Liu2019], [Liu2020]: the relay wall as the lens of a camera for a virtual wave that
+// illuminates the hidden scene from the illumination points. The field at a voxel is
+//
+//     sum over pairs of (H * wave)(|l - p| + |p - s|),
+//
+// the wave focused at the moment it reaches the voxel. On planar sensing grids it is propagated
+// frequency by frequency with the Rayleigh-Sommerfeld kernel by FFT from plane to plane, a group
+// of planes at a time: how many frequencies that takes grows with the span of their path lengths.
+// Amplitude factors of the propagation are left out. Other scans: phasor_backprojection().
+//
+// Settings: phasor, whose wavelength_m must be set. Slabs of the frequencies that are propagated.
+// The volume is the magnitude of the field.
 #include "nlos/fourier/padded_plane.h"
-#include "nlos/methods/methods.h"
+#include "nlos/methods/backprojection.h"
 #include "nlos/methods/plane_propagator.h"
 #include "nlos/methods/slabs.h"
 #include "nlos/methods/virtual_wave.h"
 #include "renderer/core/large_memory.h"
+
+#include <fmt/format.h>
 
 #include <array>
 #include <cmath>
@@ -50,7 +64,7 @@ std::array<double, 2> path_lengths(const MethodInput& input, const Slab& planes)
     const double high = std::max(input.wall.max_m[1], input.axes.y_m.back()) -
                         std::min(input.wall.min_m[1], input.axes.y_m.front());
     const double longest_back = std::sqrt(wide * wide + high * high + far_m * far_m);
-    const bool is_confocal = input.scan.pattern == core::ScanPattern::Confocal;
+    const bool is_confocal = input.scan.is_confocal();
     double longest_out = is_confocal ? longest_back : 0.0;
     for (const core::Vec3& point : illumination_of(input)) {
         for (const double x : {input.axes.x_m.front(), input.axes.x_m.back()}) {
@@ -170,8 +184,6 @@ void propagate_to(const Slab& planes,
     }
 }
 
-}  // namespace
-
 Volume phasor_field(const MethodInput& input,
                     const ReconstructSettings& settings,
                     std::size_t num_slabs) {
@@ -182,6 +194,13 @@ Volume phasor_field(const MethodInput& input,
     }
     return volume;
 }
+
+/// How much is transformed laterally on a planar grid, per illumination point.
+struct PhasorTransforms {
+    std::size_t wall = 0;              ///< frequencies at the wall
+    std::size_t planes = 0;            ///< frequencies at planes of voxels
+    std::size_t most_frequencies = 0;  ///< that serve one plane
+};
 
 PhasorTransforms phasor_transforms(const MethodInput& input, const PhasorSettings& settings) {
     PhasorTransforms transforms;
@@ -211,5 +230,38 @@ double phasor_field_bytes(const MethodInput& input,
            8.0 * static_cast<double>(nx * ny * kPlanesPerGroup) +
            4.0 * static_cast<double>(input.axes.num_voxels());
 }
+
+/// For every depth and frequency the kernel and one plane back; confocal frequencies add up before
+/// the way back.
+LeastWork least_phasor_work(const MethodInput& input, const ReconstructSettings& settings) {
+    const PhasorTransforms transforms = phasor_transforms(input, settings.phasor);
+    const bool is_confocal = input.scan.is_confocal();
+    return {.planes_forward = transforms.wall,
+            .planes_inverse = is_confocal ? input.axes.z_m.size() : transforms.planes,
+            .even_planes = transforms.planes};
+}
+
+constexpr std::size_t kMinSensingPoints = 4;
+
+std::string why_too_few_points(const PreparedCapture& prepared, const VolumeSettings& /*volume*/) {
+    const std::size_t points = prepared.scan.sensing.size();
+    return points < kMinSensingPoints ? fmt::format("{} sensing points", points) : "";
+}
+
+constexpr MethodNeeds kSensingPoints{.text = "at least 4 sensing points",
+                                     .met = "scan of several points",
+                                     .obstacle = why_too_few_points};
+
+}  // namespace
+
+const MethodTraits kPhasor{.method = Method::Phasor,
+                           .meaning = "phasor field, Rayleigh-Sommerfeld propagation",
+                           .captures = "all",
+                           .run = phasor_field,
+                           .bytes = phasor_field_bytes,
+                           .errors = {kWaveErrors, {}},
+                           .needs = &kSensingPoints,
+                           .propagates_wave = true,
+                           .least_work = least_phasor_work};
 
 }  // namespace nlos

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "nlos/fourier/fft.h"
-#include "nlos/methods/method_input.h"
-#include "nlos/reconstruction/reconstruct_settings.h"
+#include "nlos/methods/methods.h"
 
 #include <array>
 #include <vector>
@@ -27,6 +26,13 @@ struct VirtualWave {
     /// Frequencies [begin, end) alone: fields of parts add up to the field of the wave.
     VirtualWave part(std::size_t begin, std::size_t end) const;
 };
+
+/// Of methods that show the magnitude of a wave.
+inline constexpr VolumeErrors kWaveErrors{.scale = VolumeScale::Magnitude,
+                                          .model_fraction = 0.115,
+                                          .noise_fraction = 0.3,
+                                          .doubt = 7.0,
+                                          .plateau = {0.0, 0.5}};
 
 /// Distance of neighbouring wall points [m]: the grid's, or that of as many points spread evenly
 /// over the footprint.

@@ -126,13 +126,14 @@ std::vector<double> depth_sigmas(const Volume& volume,
             const double noise = std::sqrt(0.5 * core::kPi) * movement.value();
             const double width = std::min(kWidest, 1.0 / std::sqrt(peaks[i].curvature));
             const double odds_against = 1.0 / surface.probability[i] - 1.0;
-            const double sure = std::hypot(errors.noise_share * noise, errors.model_share * width);
+            const double sure =
+                std::hypot(errors.noise_fraction * noise, errors.model_fraction * width);
             const Mean rough_m = mean_near(depth, ix, iy, kPlaneReach, [&](std::size_t j) {
                 return std::min(off_m[j], kRoughest * step_m);
             });
             sigmas[i] = std::hypot(step_m * sure * std::hypot(1.0, errors.doubt * odds_against),
                                    kOwnShare * off_m[i],
-                                   errors.near_share * rough_m.value());
+                                   errors.near_fraction * rough_m.value());
         }
     }
     return sigmas;

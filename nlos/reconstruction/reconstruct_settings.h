@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "nlos/reconstruction/method.h"
 #include "renderer/core/capture/instrument_response.h"
-#include "renderer/core/settings.h"
 
 #include <array>
 #include <optional>
@@ -10,8 +10,6 @@
 namespace nlos {
 
 inline constexpr int kMaxVoxelsPerAxis = 65536;
-
-enum class Method { Auto, Lct, Bp, Fbp, Fk, Phasor, Dlct, Solver };
 
 /// How hidden surfaces reflect: diffuse light falls off with r^4, retroreflected light with r^2.
 /// Diffuse surfaces that face the wall add the cosines z / r of wall and surface, there and back:
@@ -78,8 +76,7 @@ struct SolverSettings {
     std::optional<int> max_iterations;  ///< empty: by the solver
 };
 
-/// How to reconstruct. To add a method: a name in Method, a row in functions_of() of
-/// nlos/reconstruct.cpp, and one .cpp in nlos/methods.
+/// How to reconstruct.
 struct ReconstructSettings {
     Method method = Method::Auto;
     VolumeSettings volume;
@@ -237,11 +234,6 @@ void validate(const ReconstructSettings& settings);
 
 }  // namespace nlos
 
-template <>
-struct core::EnumNames<nlos::Method> {
-    static constexpr auto value =
-        names_from_zero<nlos::Method>("auto", "lct", "bp", "fbp", "fk", "phasor", "dlct", "solver");
-};
 template <>
 struct core::EnumNames<nlos::Compensation> {
     static constexpr auto value = names_from_zero<nlos::Compensation>("none", "diffuse", "retro");

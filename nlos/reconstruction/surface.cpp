@@ -173,7 +173,7 @@ std::vector<double> surface_probabilities(const Volume& volume,
     }
     std::ranges::transform(
         probabilities,
-        plateau_probabilities(brightness, probabilities, volume.axes.y_m.size(), errors.shares),
+        plateau_probabilities(brightness, probabilities, volume.axes.y_m.size(), errors.plateau),
         probabilities.begin(),
         std::multiplies<>());
     return probabilities;

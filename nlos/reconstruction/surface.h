@@ -20,11 +20,11 @@ struct Surface {
 /// What a method's volume says of noise and depth.
 struct VolumeErrors {
     VolumeScale scale = VolumeScale::Amplitude;
-    double model_share = 0.0;  ///< of a peak's width: deviation of depths without noise
-    double noise_share = 0.5;  ///< of the noise's deviation that roughness does not show
-    double doubt = 0.0;        ///< how both grow with the odds against a surface
-    double near_share = 0.0;   ///< of the neighbours' roughness
-    PlateauShares shares = {};
+    double model_fraction = 0.0;  ///< of a peak's width: deviation of depths without noise
+    double noise_fraction = 0.5;  ///< of the noise's deviation that roughness does not show
+    double doubt = 0.0;           ///< how both grow with the odds against a surface
+    double near_fraction = 0.0;   ///< of the neighbours' roughness
+    PlateauFractions plateau = {};
     double steepest = 0.0;  ///< slope of surfaces whose light is spread over voxels of a column
     double front = 0.0;     ///< share of a peak from which on one before it hides it; 0: never
 };

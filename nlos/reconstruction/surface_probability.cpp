@@ -72,7 +72,7 @@ constexpr double kTolerance = 1e-6;
 /// Against all surfaces. From above: the mean of what is bright, then of what that calls a surface.
 std::vector<double> probabilities_among_all(const std::vector<double>& peaks,
                                             const std::vector<double>& weights,
-                                            const PlateauShares& shares) {
+                                            const PlateauFractions& fractions) {
     std::vector<double> probabilities(peaks.size(), 1.0);
     double last = 0.0;
     for (int i = 0; i < kMaxIterations; ++i) {
@@ -83,7 +83,8 @@ std::vector<double> probabilities_among_all(const std::vector<double>& peaks,
         if (std::abs(mean.value() - last) <= kTolerance * last) break;
         last = mean.value();
         std::ranges::transform(peaks, probabilities.begin(), [&](double peak) {
-            return 1.0 / (1.0 + std::pow(odds_against(peak, shares.dimmest * last), shares.power));
+            return 1.0 /
+                   (1.0 + std::pow(odds_against(peak, fractions.dimmest * last), fractions.power));
         });
     }
     return probabilities;
@@ -138,8 +139,8 @@ std::vector<double> false_discovery_rates(const std::vector<double>& p_values) {
 std::vector<double> plateau_probabilities(const std::vector<double>& peaks,
                                           const std::vector<double>& weights,
                                           std::size_t num_y,
-                                          const PlateauShares& shares) {
-    const std::vector<double> among_all = probabilities_among_all(peaks, weights, shares);
+                                          const PlateauFractions& fractions) {
+    const std::vector<double> among_all = probabilities_among_all(peaks, weights, fractions);
     std::vector<double> probabilities = among_all;
     std::vector<double> own(peaks.size());
     std::vector<double> moment(peaks.size());
@@ -154,7 +155,7 @@ std::vector<double> plateau_probabilities(const std::vector<double>& peaks,
         for (std::size_t k = 0; k < peaks.size(); ++k) {
             const double mean = SurfaceMean{sums[k], weight_sums[k]}.value();
             next[k] =
-                among_all[k] / (1.0 + power_around(odds_against(peaks[k], shares.edge * mean)));
+                among_all[k] / (1.0 + power_around(odds_against(peaks[k], fractions.edge * mean)));
         }
         probabilities.swap(next);
         const double change = largest_difference(probabilities, next);

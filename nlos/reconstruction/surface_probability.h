@@ -17,7 +17,7 @@ namespace nlos {
 std::vector<double> false_discovery_rates(const std::vector<double>& p_values);
 
 /// Brightness at which a column is as likely a surface as what a method smears around one.
-struct PlateauShares {
+struct PlateauFractions {
     double edge = 0.7;     ///< of the surfaces among the column and its eight neighbours; 0: none
     double dimmest = 0.2;  ///< of all surfaces
     double power = 4.0;    ///< of the odds that the ratio to `dimmest` makes
@@ -39,6 +39,6 @@ struct PlateauShares {
 std::vector<double> plateau_probabilities(const std::vector<double>& peaks,
                                           const std::vector<double>& weights,
                                           std::size_t num_y,
-                                          const PlateauShares& shares);
+                                          const PlateauFractions& fractions);
 
 }  // namespace nlos

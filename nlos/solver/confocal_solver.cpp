@@ -17,6 +17,10 @@ constexpr double kFewCounts = 5.0;      // in the bins that hold most of the lig
 constexpr double kClearlyBetter = 0.8;  // share of the misfit
 constexpr double kMuchBlur = 1.0;       // of depth: cosines left out look like surfaces
 
+bool is_much_smeared(const MethodInput& input) {
+    return depth_blur(input) > kMuchBlur;
+}
+
 /// The mean of counts, weighted by themselves.
 double mean_intensity(const ConfocalProblem& data) {
     double sum = 0.0;
@@ -31,7 +35,7 @@ double mean_intensity(const ConfocalProblem& data) {
 /// What a few iterations leave unexplained of the data; null where they would not tell: of radiance
 /// that is not smeared, and of few counts.
 std::optional<double> trial_misfit(const MethodInput& input, const ReconstructSettings& settings) {
-    const bool is_smeared = needs_falloff_choice(input);
+    const bool is_smeared = is_much_smeared(input);
     const ConfocalProblem data = make_confocal_problem(input, settings, is_smeared);
     const bool is_poisson = data.likelihood == Likelihood::Poisson;
     if (is_poisson ? mean_intensity(data) < kFewCounts : !is_smeared) return {};
@@ -42,9 +46,7 @@ std::optional<double> trial_misfit(const MethodInput& input, const ReconstructSe
 
 }  // namespace
 
-Volume solve_confocal(const MethodInput& input,
-                      const ReconstructSettings& settings,
-                      std::size_t /*num_slabs*/) {
+Volume solve_confocal(const MethodInput& input, const ReconstructSettings& settings) {
     const bool is_facing = settings.falloff == Falloff::Facing;
     const ConfocalProblem data = make_confocal_problem(input, settings, is_facing);
     const Cone& cone = data.cone;
@@ -82,23 +84,26 @@ Volume solve_confocal(const MethodInput& input,
     return volume;
 }
 
-bool needs_falloff_choice(const MethodInput& input) {
-    return depth_blur(input) > kMuchBlur;
-}
-
-FalloffChoice choose_falloff(const MethodInput& input, ReconstructSettings settings) {
+std::optional<FalloffChoice> choose_falloff(const MethodInput& input,
+                                            const ReconstructSettings& settings,
+                                            FalloffTrial trial) {
+    if (!is_confocal_grid(input)) return std::nullopt;
+    const bool is_smeared = is_much_smeared(input);
+    if (trial == FalloffTrial::WhereNeeded && !is_smeared) return std::nullopt;
     FalloffChoice choice{Falloff::Diffuse,
                          "falloff: taken for diffuse, which only many counts tell"};
     std::vector<Falloff> others{Falloff::Retro};
-    if (needs_falloff_choice(input)) others.push_back(Falloff::Facing);
-    settings.falloff = Falloff::Diffuse;
-    const std::optional<double> diffuse = trial_misfit(input, settings);
+    if (is_smeared) others.push_back(Falloff::Facing);
+    const auto misfit_of = [&, tried = settings](Falloff falloff) mutable {
+        tried.falloff = falloff;
+        return trial_misfit(input, tried);
+    };
+    const std::optional<double> diffuse = misfit_of(Falloff::Diffuse);
     if (!diffuse) return choice;
     double least = kClearlyBetter;
     std::string ratios;
     for (const Falloff falloff : others) {
-        settings.falloff = falloff;
-        const double ratio = *trial_misfit(input, settings) / *diffuse;
+        const double ratio = *misfit_of(falloff) / *diffuse;
         ratios += fmt::format(", {} {:.2f}", core::enum_name(falloff), ratio);
         if (!(ratio < least)) continue;  // nor where there is no light
         least = ratio;
@@ -109,13 +114,11 @@ FalloffChoice choose_falloff(const MethodInput& input, ReconstructSettings setti
     return choice;
 }
 
-double solve_confocal_bytes(const MethodInput& input,
-                            const ReconstructSettings& settings,
-                            std::size_t /*num_slabs*/) {
+double solve_confocal_bytes(const MethodInput& input, const ReconstructSettings& settings) {
     const Cone cone = make_cone(input, kVBinsPerRangeBin);
     const double volume = 4.0 * static_cast<double>(input.axes.num_voxels());
     const bool may_be_confined = settings.falloff == Falloff::Facing ||
-                                 (settings.falloff == Falloff::Auto && needs_falloff_choice(input));
+                                 (settings.falloff == Falloff::Auto && is_much_smeared(input));
     if (!may_be_confined) return ConfocalAdmm::bytes(cone, false) + volume;
     const double num_bins = static_cast<double>(input.time_axis.num_bins);
     const double reach = static_cast<double>(input.measurement.response.weights.size());

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/methods/method_input.h"
-#include "nlos/reconstruction/reconstruct_settings.h"
-
-#include <string>
+#include "nlos/methods/methods.h"
 
 namespace nlos {
 
@@ -19,35 +16,26 @@ namespace nlos {
 /// and there are none. By the alternating direction method of multipliers, until neither the result
 /// nor the constraints change by more than settings.solver.tolerance.
 ///
-/// num_slabs  not used: every iteration needs all frequencies
 /// returns    albedo per metre of depth, up to a common factor; not negative
 /// throws     core::Failure when asked to stop
 /// source     [OToole2018], supplement; [Boyd2011]; [Candes2008]; Poisson likelihood
 /// [Figueiredo2010]
-Volume solve_confocal(const MethodInput& input,
-                      const ReconstructSettings& settings,
-                      std::size_t num_slabs);
-
-/// How light falls off with range, and why, for people.
-struct FalloffChoice {
-    Falloff falloff = Falloff::Diffuse;
-    std::string reason;
-};
-
-/// Whether the response smears depth so far that what a model leaves out looks like surfaces.
-bool needs_falloff_choice(const MethodInput& input);
+Volume solve_confocal(const MethodInput& input, const ReconstructSettings& settings);
 
 /// Finds how light falls off on a confocal grid: diffuse, unless a few iterations of the solver
 /// explain the data clearly better another way. Counts tell retroreflective light where they are
 /// many, and data whose depth is smeared surfaces that face the wall too.
 ///
 /// settings   falloff is not used
+/// trial      needed where the response smears depth so far that what a model leaves out looks like
+///            surfaces
+/// returns    nothing without a confocal grid or need
 /// throws     core::Failure when asked to stop
-FalloffChoice choose_falloff(const MethodInput& input, ReconstructSettings settings);
+std::optional<FalloffChoice> choose_falloff(const MethodInput& input,
+                                            const ReconstructSettings& settings,
+                                            FalloffTrial trial);
 
 /// Memory that solve_confocal() takes on top of its input [bytes].
-double solve_confocal_bytes(const MethodInput& input,
-                            const ReconstructSettings& settings,
-                            std::size_t num_slabs);
+double solve_confocal_bytes(const MethodInput& input, const ReconstructSettings& settings);
 
 }  // namespace nlos

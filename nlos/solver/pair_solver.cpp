@@ -4,6 +4,7 @@
 #include "nlos/preparation/histogram_preparation.h"
 #include "nlos/solver/active_voxels.h"
 #include "nlos/solver/pair_operator.h"
+#include "renderer/core/statistics.h"
 
 #include <fmt/format.h>
 
@@ -19,7 +20,7 @@ constexpr std::size_t kPairsPerSubset = 64;  // at least
 constexpr std::size_t kMaxSubsets = 16;      // at first
 constexpr int kPassesPerDoubling = 3;        // of the subsets' size
 constexpr std::size_t kFirstPairs = 256;     // that choose voxels
-constexpr double kFirstShare = 0.1;          // of the voxels to start with, the brightest
+constexpr double kFirstFraction = 0.1;       // of the voxels to start with, the brightest
 constexpr double kSmallestPairLight = 1e-3;  // of the brightest bin
 constexpr float kNothing = 2e-3F;            // of the brightest voxel
 constexpr double kToleranceOfPairs = 0.01;   // of the relative change, unless set
@@ -126,11 +127,9 @@ class PairSolver {
         for (std::size_t i = 0; i < all.size(); ++i) {
             bright[i] = seen[i] > 0.0F ? bright[i] / seen[i] : 0.0F;
         }
-        std::vector<float> sorted = bright;
         const auto keep =
-            static_cast<std::ptrdiff_t>(kFirstShare * static_cast<double>(all.size()));
-        std::ranges::nth_element(sorted, sorted.end() - keep - 1);
-        const float least = *(sorted.end() - keep - 1);
+            static_cast<std::size_t>(kFirstFraction * static_cast<double>(all.size()));
+        const float least = core::value_at_rank(bright, bright.size() - keep - 1);
         for (std::size_t i = 0; i < all.size(); ++i) {
             if (bright[i] <= least || !(bright[i] > 0.0F)) continue;
             voxels_.indices.push_back(all[i]);
@@ -291,18 +290,14 @@ class PairSolver {
 
 }  // namespace
 
-Volume solve_pairs(const MethodInput& input,
-                   const ReconstructSettings& settings,
-                   std::size_t /*num_slabs*/) {
+Volume solve_pairs(const MethodInput& input, const ReconstructSettings& settings) {
     return PairSolver(input, settings).run();
 }
 
-double solve_pairs_bytes(const MethodInput& input,
-                         const ReconstructSettings& /*settings*/,
-                         std::size_t /*num_slabs*/) {
+double solve_pairs_bytes(const MethodInput& input) {
     const auto voxels = static_cast<double>(input.axes.num_voxels());
     const double histograms = 4.0 * static_cast<double>(input.transient.values().size());
-    return (4.0 * 8.0 + kFirstShare * (4.0 * kMaxSubsets + 100.0)) * voxels + 4.0 * histograms;
+    return (4.0 * 8.0 + kFirstFraction * (4.0 * kMaxSubsets + 100.0)) * voxels + 4.0 * histograms;
 }
 
 }  // namespace nlos

@@ -18,17 +18,12 @@ namespace nlos {
 /// Radiance is taken for counts whose brightest bin holds 400, as if the model erred there by 5 %;
 /// what is negative in it counts as 0.
 ///
-/// num_slabs  not used
-/// returns    albedo, not negative
-/// throws     core::Failure when asked to stop
-/// source     [Sawatzky2008], [Hudson1994]
-Volume solve_pairs(const MethodInput& input,
-                   const ReconstructSettings& settings,
-                   std::size_t num_slabs);
+/// returns   albedo, not negative
+/// throws    core::Failure when asked to stop
+/// source    [Sawatzky2008], [Hudson1994]
+Volume solve_pairs(const MethodInput& input, const ReconstructSettings& settings);
 
 /// Memory that solve_pairs() takes on top of its input [bytes].
-double solve_pairs_bytes(const MethodInput& input,
-                         const ReconstructSettings& settings,
-                         std::size_t num_slabs);
+double solve_pairs_bytes(const MethodInput& input);
 
 }  // namespace nlos

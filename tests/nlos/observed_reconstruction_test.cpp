@@ -2,7 +2,7 @@
 // What every method makes of a gate that holds the object and of dead points.
 #include "nlos/detector/detector.h"
 #include "nlos/reconstruct.h"
-#include "renderer/core/settings_json.h"
+#include "tests/nlos/every_method.h"
 #include "tests/nlos/methods/confocal_scene.h"
 #include "tests/support/error_message.h"
 #include "tests/support/statistics.h"
@@ -26,21 +26,16 @@ constexpr std::size_t kNumZ = 38;
 const Vec3 kPlace(0.06, -0.1, 0.55);
 const BinRange kGate{60, 132};  // half the bins, with all light of the object
 
-struct MaskCase {
-    std::string name;
-    ScanPattern pattern;
-    std::vector<std::string> overrides;
-    double ghosts;  ///< what dead points may add away from the object, of its brightness
-    bool is_light_cone = false;
-};
+constexpr double kGhosts = 0.05;  // that dead points may add off the object, of its brightness
 
-class ObservedReconstruction : public testing::TestWithParam<MaskCase> {
+class ObservedReconstruction
+    : public testing::TestWithParam<std::pair<nlos_test::MethodCase, ScanPattern>> {
  protected:
     static core::Capture whole_capture() {
         core::Capture capture = nlos_test::confocal_capture(
             nlos_test::wall_grid({kWallColumns, kWallColumns}, {kWallPitch_m, kWallPitch_m}),
             {0.0, 0.016, 144});
-        capture.scan.wall().pattern = GetParam().pattern;
+        capture.scan.wall().pattern = GetParam().second;
         if (capture.scan.wall().pattern == ScanPattern::Single) {
             capture.scan.wall().illumination = nlos_test::wall_grid({1, 1}, {1.0, 1.0});
         }
@@ -69,9 +64,8 @@ class ObservedReconstruction : public testing::TestWithParam<MaskCase> {
     }
 
     static Reconstruction run(const core::Capture& capture) {
-        ReconstructSettings settings;
+        ReconstructSettings settings = GetParam().first.settings();
         settings.volume = {std::array{24, 24, static_cast<int>(kNumZ)}, std::array{0.4, 0.704}};
-        for (const std::string& text : GetParam().overrides) core::apply_override(settings, text);
         return reconstruct(capture, settings, {});
     }
 
@@ -116,7 +110,7 @@ class ObservedReconstruction : public testing::TestWithParam<MaskCase> {
         const Volume alive = run(gated).volume;
         const Reconstruction seen = run(masked);
         EXPECT_LT((nlos_test::brightest_point(seen) - kPlace).norm(), tolerance_m);
-        EXPECT_LT(ghosts(seen.volume), ghosts(alive) + GetParam().ghosts);
+        EXPECT_LT(ghosts(seen.volume), ghosts(alive) + kGhosts);
         const double with_mask = error(seen.volume, alive);
         const double without = error(run(dark).volume, run(whole).volume);
         EXPECT_LE(with_mask, std::max(1.02 * without, 0.02));
@@ -148,7 +142,7 @@ TEST_P(ObservedReconstruction, AGateOfAllPointsIsAShorterAxis) {
         std::ranges::copy(gated.observed_values(pair), shorter.transient.histogram(pair).begin());
     }
     const std::vector<float> found = run(gated).volume.values;
-    if (GetParam().is_light_cone) {  // whose transform covers all of the axis
+    if (GetParam().first.traits->has_wiener_filter) {  // light cones: they cover all of the axis
         EXPECT_LT(test_support::relative_l2(found, run(dark).volume.values), 0.01);
     } else {
         EXPECT_EQ(found, run(shorter).volume.values);
@@ -173,32 +167,10 @@ TEST_P(ObservedReconstruction, AnythingObservedGivesFiniteVolumes) {
     EXPECT_ERROR_WITH(run(capture), "found no observed bin");
 }
 
-std::vector<MaskCase> mask_cases() {
-    std::vector<MaskCase> cases{
-        {"LctConfocal", ScanPattern::Confocal, {"method=lct", "snr=10"}, 0.05, true},
-        {"SolverConfocal", ScanPattern::Confocal, {"method=solver"}, 0.05},
-        {"DlctConfocal", ScanPattern::Confocal, {"method=dlct", "snr=10"}, 0.05, true},
-        {"FkConfocal", ScanPattern::Confocal, {"method=fk"}, 0.05}};
-    const std::vector<std::pair<std::string, ScanPattern>> patterns{
-        {"Confocal", ScanPattern::Confocal},
-        {"Single", ScanPattern::Single},
-        {"Exhaustive", ScanPattern::Exhaustive}};
-    for (const auto& [name, pattern] : patterns) {
-        cases.push_back({"Bp" + name, pattern, {"method=bp"}, 0.05});
-        if (pattern != ScanPattern::Confocal) {
-            cases.push_back({"Solver" + name, pattern, {"method=solver"}, 0.05});
-        }
-        cases.push_back({"Fbp" + name, pattern, {"method=fbp"}, 0.05});
-        cases.push_back({"PhasorFbp" + name, pattern, {"method=fbp", "filter=phasor"}, 0.05});
-        cases.push_back({"Phasor" + name, pattern, {"method=phasor"}, 0.05});
-    }
-    return cases;
-}
-
 INSTANTIATE_TEST_SUITE_P(Methods,
                          ObservedReconstruction,
-                         testing::ValuesIn(mask_cases()),
-                         [](const auto& mask) { return mask.param.name; });
+                         testing::ValuesIn(nlos_test::every_method_and_scan()),
+                         [](const auto& mask) { return mask.param.first.name; });
 
 TEST(DeadPoints, TransformsSayThatTheyTakeDeadPointsForDark) {
     core::Capture capture =
@@ -206,20 +178,20 @@ TEST(DeadPoints, TransformsSayThatTheyTakeDeadPointsForDark) {
     nlos_test::add_scatterer(capture, kPlace, 4.0);
     std::vector<BinRange> ranges(256, {20, 100});
     core::restrict_observed(capture, ranges);
-    const auto says = [&](const char* method) {
-        ReconstructSettings settings;
-        core::apply_override(settings, method);
-        const auto warnings = reconstruct(capture, settings, {}).warnings;
+    const auto says = [&](const nlos_test::MethodCase& method) {
+        const auto warnings = reconstruct(capture, method.settings(), {}).warnings;
         return std::ranges::any_of(warnings, [](const std::string& text) {
             return text.starts_with("1 of 256 histograms have bins that were not observed");
         });
     };
-    EXPECT_FALSE(says("method=lct")) << "a gate of all points is only a shorter axis";
+    for (const nlos_test::MethodCase& method : nlos_test::every_method()) {
+        EXPECT_FALSE(says(method)) << "a gate of all points is only a shorter axis";
+    }
     ranges[7] = {0, 0};
     core::restrict_observed(capture, ranges);
-    EXPECT_TRUE(says("method=lct"));
-    EXPECT_TRUE(says("method=phasor"));
-    EXPECT_FALSE(says("method=bp"));
+    for (const nlos_test::MethodCase& method : nlos_test::every_method()) {
+        EXPECT_EQ(says(method), method.traits->needs != nullptr) << method.name;
+    }
 }
 
 }  // namespace

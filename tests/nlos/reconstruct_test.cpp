@@ -4,6 +4,7 @@
 #include "renderer/core/parallel.h"
 #include "renderer/core/process.h"
 #include "renderer/core/settings_json.h"
+#include "tests/nlos/every_method.h"
 #include "tests/nlos/methods/confocal_scene.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
@@ -19,9 +20,8 @@ namespace nlos {
 namespace {
 
 using core::Vec3;
-
-constexpr std::array kMethods{
-    "method=lct", "method=dlct", "method=bp", "method=fbp", "method=fk", "method=phasor"};
+using nlos_test::every_method;
+using nlos_test::MethodCase;
 
 core::Capture example() {
     core::Capture capture = nlos_test::confocal_capture(
@@ -44,13 +44,13 @@ TEST(Reconstruct, EveryMethodFindsAPointInWorldCoordinates) {
         nlos_test::wall_grid({16, 16}, {0.05, 0.05}, pose), {0.0, 0.016, 128});
     const Vec3 scatterer = pose * Vec3(0.075, -0.125, 0.5);
     nlos_test::add_scatterer(capture, scatterer, 4.0);
-    for (const char* method : kMethods) {
-        const Reconstruction result = reconstruct(capture, with({method}), {});
+    for (const MethodCase& method : every_method()) {
+        const Reconstruction result = reconstruct(capture, method.settings(), {});
         const std::vector<float> projection = max_projection(result.volume);
         const auto column = static_cast<std::size_t>(
             std::max_element(projection.begin(), projection.end()) - projection.begin());
         const Vec3 found = result.depth.point_world(column / 16, column % 16);
-        EXPECT_LT((found - scatterer).norm(), 0.01) << method;
+        EXPECT_LT((found - scatterer).norm(), 0.01) << method.name;
     }
 }
 
@@ -94,14 +94,14 @@ TEST(Reconstruct, RefusalsNameTheMethodThatWorks) {
     core::Capture gated = example();
     gated.time_axis = {1.0, 0.3, 1};
     gated.transient = core::Transient(gated.scan.num_pairs(), 1);
-    for (const std::string name : {"lct", "dlct", "fk"}) {
-        const std::string method = "method=" + name;
-        EXPECT_ERROR_WITH(reconstruct(list, with({method}), {}), "method=phasor works");
-        EXPECT_ERROR_WITH(reconstruct(example(), with({method, "volume.voxels=[8,8,8]"}), {}),
+    for (const MethodCase& method : every_method()) {
+        if (!method.traits->needs) continue;
+        EXPECT_ERROR_WITH(reconstruct(gated, method.settings(), {}), "method=bp works");
+        if (method.traits->needs != &kConfocalGrid) continue;
+        EXPECT_ERROR_WITH(reconstruct(list, method.settings(), {}), "method=phasor works");
+        EXPECT_ERROR_WITH(reconstruct(example(), method.settings({"volume.voxels=[8,8,8]"}), {}),
                           "method=phasor works");
-        EXPECT_ERROR_WITH(reconstruct(gated, with({method}), {}), "method=bp works");
     }
-    EXPECT_ERROR_WITH(reconstruct(gated, with({"method=phasor"}), {}), "method=bp works");
 }
 
 TEST(Reconstruct, ConfocalMethodsTakeASingleLaserScanByItsMidpoints) {
@@ -111,15 +111,16 @@ TEST(Reconstruct, ConfocalMethodsTakeASingleLaserScanByItsMidpoints) {
     std::fill(capture.transient.values().begin(), capture.transient.values().end(), 0.0F);
     const Vec3 scatterer(0.0125, -0.0125, 0.5);
     nlos_test::add_scatterer(capture, scatterer, 4.0);
-    for (const char* method : {"method=lct", "method=fk"}) {
-        const Reconstruction result = reconstruct(capture, with({method}), {});
+    for (const MethodCase& method : every_method()) {
+        if (!method.traits->needs || !method.traits->needs->takes_other_patterns) continue;
+        const Reconstruction result = reconstruct(capture, method.settings(), {});
         EXPECT_NE(result.reason.find("converted"), std::string::npos);
         EXPECT_NEAR(result.volume.axes.x_m[1] - result.volume.axes.x_m[0], 0.025, 1e-9);
         const std::vector<float> projection = max_projection(result.volume);
         const auto column = static_cast<std::size_t>(
             std::max_element(projection.begin(), projection.end()) - projection.begin());
         const Vec3 found = result.depth.point_world(column / 16, column % 16);
-        EXPECT_LT((found - scatterer).norm(), 0.01) << method;
+        EXPECT_LT((found - scatterer).norm(), 0.01) << method.name;
     }
 }
 
@@ -192,22 +193,22 @@ TEST(Reconstruct, TakesTheResponseOff) {
     const core::ResponseFilter filter = core::sample_response(
         core::make_response({100.0, 400.0, {}}, "test"), capture.time_axis.bin_width_m);
     capture.transient = core::apply_filter(filter, capture.transient);
-    for (const char* method : kMethods) {
+    for (const MethodCase& method : every_method()) {
+        if (method.traits->explains_response) continue;
         const auto depth_error = [&](const std::vector<std::string>& settings) {
-            const Reconstruction result = reconstruct(capture, with(settings), {});
+            const Reconstruction result = reconstruct(capture, method.settings(settings), {});
             const std::vector<float> projection = max_projection(result.volume);
             const auto column = static_cast<std::size_t>(
                 std::max_element(projection.begin(), projection.end()) - projection.begin());
             return std::abs(result.depth.point_world(column / 16, column % 16).z() - 0.5);
         };
-        const bool by_phase = method == kMethods[4] || method == kMethods[5];
-        EXPECT_GT(depth_error({method}), by_phase ? 0.0 : 0.012) << method;
-        EXPECT_LT(depth_error({method,
-                               "response.jitter_fwhm_ps=100",
-                               "response.tail_ps=400",
-                               "response_floor=0.02"}),
-                  0.006)
-            << method;
+        const bool by_phase = method.traits == &kFk || method.traits->propagates_wave;
+        EXPECT_GT(depth_error({}), by_phase ? 0.0 : 0.012) << method.name;
+        EXPECT_LT(
+            depth_error(
+                {"response.jitter_fwhm_ps=100", "response.tail_ps=400", "response_floor=0.02"}),
+            0.006)
+            << method.name;
     }
 }
 
@@ -248,31 +249,21 @@ TEST(Reconstruct, WorksInSlabsWhenMemoryIsShort) {
     core::Capture capture = nlos_test::confocal_capture(
         nlos_test::wall_grid({16, 16}, {0.06, 0.06}), {0.0, 0.016, 256});
     nlos_test::add_scatterer(capture, Vec3(0.07, -0.13, 0.5), 4.0);
-    for (const std::vector<std::string>& method :
-         std::vector<std::vector<std::string>>{{"method=lct"},
-                                               {"method=dlct"},
-                                               {"method=fk"},
-                                               {"method=phasor"},
-                                               {"method=bp"},
-                                               {"method=fbp"},
-                                               {"method=fbp", "filter=phasor"}}) {
-        const std::string name = fmt::format("{}", fmt::join(method, " "));
-        const Reconstruction whole = reconstruct(capture, with(method), {});
+    for (const MethodCase& method : every_method()) {
+        if (method.iterates()) continue;
+        const Reconstruction whole = reconstruct(capture, method.settings(), {});
         std::string announced;
         core::Progress progress;
         progress.announce = [&](const std::string& text) { announced = text; };
         const std::string limit = fmt::format("memory_gb={}", 0.7e-9 * whole.stated_bytes);
-        std::vector<std::string> limited = method;
-        limited.push_back(limit);
-        const Reconstruction slabs = reconstruct(capture, with(limited), progress);
+        const Reconstruction slabs = reconstruct(capture, method.settings({limit}), progress);
         EXPECT_NE(announced.find(" slabs"), std::string::npos) << announced;
-        EXPECT_LT(slabs.stated_bytes, 0.7 * whole.stated_bytes) << name;
+        EXPECT_LT(slabs.stated_bytes, 0.7 * whole.stated_bytes) << method.name;
         // Single precision, whose rounding dlct raises next to the wall (7e-5 at most seen).
         EXPECT_LT(test_support::relative_l2(slabs.volume.values, whole.volume.values), 1e-3)
-            << name;
-        std::vector<std::string> hopeless = method;
-        hopeless.push_back("memory_gb=0.0001");
-        EXPECT_THROW(reconstruct(capture, with(hopeless), {}), core::Failure) << name;
+            << method.name;
+        EXPECT_THROW(reconstruct(capture, method.settings({"memory_gb=0.0001"}), {}), core::Failure)
+            << method.name;
     }
     EXPECT_THROW(reconstruct(capture, with({"prior=tv", "memory_gb=0.001"}), {}), core::Failure);
 }
@@ -286,52 +277,44 @@ TEST(Reconstruct, TakesNoMoreMemoryThanItStates) {
     nlos_test::add_scatterer(capture, Vec3(0.075, -0.125, 0.5), 4.0);
     const core::ThreadLimit limit(1);
     constexpr double kSlack_bytes = 16e6;  // of code, plans, depth map and the allocator
-    const auto stated_bytes = [&](std::vector<std::string> overrides) {
-        for (const char* common : {"merge_bins=1", "volume.z_range_m=[0.4,0.6]"}) {
-            overrides.push_back(common);
-        }
+    const auto stated_bytes = [&](const MethodCase& method, const std::string& setting) {
+        const ReconstructSettings settings =
+            method.settings({"merge_bins=1", "volume.z_range_m=[0.4,0.6]", setting});
         core::reset_peak_rss();
         const auto before = static_cast<double>(core::peak_rss_bytes());
-        const Reconstruction result = reconstruct(capture, with(overrides), {});
+        const Reconstruction result = reconstruct(capture, settings, {});
         const double taken = static_cast<double>(core::peak_rss_bytes()) - before;
-        EXPECT_LT(taken, result.stated_bytes + kSlack_bytes)
-            << fmt::format("{}", fmt::join(overrides, " "));
+        EXPECT_LT(taken, result.stated_bytes + kSlack_bytes) << method.name << " " << setting;
         EXPECT_GT(result.stated_bytes, 4.0 * static_cast<double>(result.volume.values.size()));
         return result.stated_bytes;
     };
-    for (const std::vector<std::string>& overrides : {std::vector<std::string>{"method=bp"},
-                                                      {"method=fbp"},
-                                                      {"method=phasor"},
-                                                      {"method=lct"},
-                                                      {"method=fk"},
-                                                      {"method=fbp", "filter=phasor"},
-                                                      {"method=dlct"}}) {
-        std::vector<std::string> in_slabs = overrides;
-        in_slabs.push_back(fmt::format("memory_gb={}", 0.8e-9 * stated_bytes(overrides)));
-        stated_bytes(in_slabs);
+    for (const MethodCase& method : every_method()) {
+        const double bytes = stated_bytes(method, "solver.max_iterations=2");
+        if (method.iterates()) continue;
+        stated_bytes(method, fmt::format("memory_gb={}", 0.8e-9 * bytes));
     }
-    stated_bytes({"method=lct", "prior=tv", "solver.max_iterations=2"});
 }
 
 TEST(Reconstruct, EndsWhenAskedToStop) {
-    for (const char* method : kMethods) {
+    for (const MethodCase& method : every_method()) {
         int asked = 0;
         core::Progress progress;
         progress.stop_requested = [&] { return ++asked > 3; };
-        EXPECT_THROW(reconstruct(example(), with({method}), progress), core::Failure);
+        EXPECT_THROW(reconstruct(example(), method.settings(), progress), core::Failure)
+            << method.name;
     }
 }
 
 TEST(Reconstruct, ReportsProgressUpToTheEnd) {
-    for (const char* method : kMethods) {
+    for (const MethodCase& method : every_method()) {
         double last = 0.0;
         core::Progress progress;
         progress.report = [&](double share, const std::string&) {
             EXPECT_GE(share, last);
             last = share;
         };
-        reconstruct(example(), with({method, "filter=phasor"}), progress);
-        EXPECT_NEAR(last, 1.0, 1e-9) << method;
+        reconstruct(example(), method.settings(), progress);
+        EXPECT_NEAR(last, 1.0, 1e-9) << method.name;
     }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruct.h"
-#include "renderer/core/settings_json.h"
+#include "tests/nlos/every_method.h"
 #include "tests/nlos/methods/confocal_scene.h"
 #include "tests/support/error_message.h"
 
@@ -18,15 +18,7 @@ namespace {
 using core::Vec3;
 using nlos_test::brightest_point;
 
-struct HardCase {
-    std::string name;
-    std::vector<std::string> overrides;
-    bool needs_grid;  ///< of wall points
-    bool needs_axis;  ///< of more than a few bins
-    bool needs_wall;  ///< of more than a few points
-};
-
-class HardCapture : public testing::TestWithParam<HardCase> {
+class HardCapture : public testing::TestWithParam<nlos_test::MethodCase> {
  protected:
     static core::Capture dark_capture(std::array<std::size_t, 2> size,
                                       std::array<double, 2> pitch_m = {0.05, 0.05},
@@ -36,8 +28,9 @@ class HardCapture : public testing::TestWithParam<HardCase> {
     }
 
     static Reconstruction run(const core::Capture& capture) {
-        ReconstructSettings settings;
-        for (const std::string& text : GetParam().overrides) core::apply_override(settings, text);
+        const bool has_filter = GetParam().traits->has_wiener_filter;
+        const auto settings = GetParam().settings(has_filter ? std::vector<std::string>{"snr=10"}
+                                                             : std::vector<std::string>{});
         return reconstruct(capture, settings, {});
     }
 
@@ -54,7 +47,7 @@ class HardCapture : public testing::TestWithParam<HardCase> {
 TEST_P(HardCapture, OnePixelWall) {
     core::Capture capture = dark_capture({1, 1});
     nlos_test::add_scatterer(capture, Vec3(0.0, 0.0, 0.4), 4.0);
-    if (GetParam().needs_wall) {
+    if (GetParam().traits->needs) {
         EXPECT_ERROR_WITH(run(capture), "method=bp works for this capture");
     } else {
         expect_finite(capture, "one point");
@@ -71,7 +64,7 @@ TEST_P(HardCapture, ThreeByThreeWall) {
 TEST_P(HardCapture, OneLineOfPoints) {
     core::Capture capture = dark_capture({12, 1});
     nlos_test::add_scatterer(capture, Vec3(0.0, 0.0, 0.4), 4.0);
-    if (GetParam().needs_grid) {
+    if (GetParam().traits->needs == &kConfocalGrid) {
         EXPECT_ERROR_WITH(run(capture), "works for this capture");
     } else {
         expect_finite(capture, "a line");
@@ -81,7 +74,7 @@ TEST_P(HardCapture, OneLineOfPoints) {
 TEST_P(HardCapture, OneBin) {
     core::Capture capture = dark_capture({8, 8}, {0.05, 0.05}, {0.8, 0.2, 1});
     for (float& value : capture.transient.values()) value = 1.0F;
-    if (GetParam().needs_axis) {
+    if (GetParam().traits->needs) {
         EXPECT_ERROR_WITH(run(capture), "method=bp works for this capture");
     } else {
         expect_finite(capture, "one bin");
@@ -148,18 +141,10 @@ TEST_P(HardCapture, UnequalPitchOnATurnedWallElsewhere) {
     EXPECT_LT((brightest_point(expect_finite(capture, "unequal pitch")) - place).norm(), 0.01);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Methods,
-    HardCapture,
-    testing::Values(HardCase{"Lct", {"method=lct", "snr=10"}, true, true, true},
-                    HardCase{"Solver", {"method=solver"}, false, false, false},
-                    HardCase{"Dlct", {"method=dlct", "snr=10"}, true, true, true},
-                    HardCase{"Fk", {"method=fk"}, true, true, true},
-                    HardCase{"Phasor", {"method=phasor"}, false, true, true},
-                    HardCase{"Fbp", {"method=fbp"}, false, false, false},
-                    HardCase{"FbpPhasor", {"method=fbp", "filter=phasor"}, false, false, false},
-                    HardCase{"Bp", {"method=bp"}, false, false, false}),
-    [](const auto& hard) { return hard.param.name; });
+INSTANTIATE_TEST_SUITE_P(Methods,
+                         HardCapture,
+                         testing::ValuesIn(nlos_test::every_method()),
+                         [](const auto& method) { return method.param.name; });
 
 }  // namespace
 }  // namespace nlos

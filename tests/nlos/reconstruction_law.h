@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/reconstruct.h"
-#include "renderer/core/settings_json.h"
+#include "tests/nlos/every_method.h"
 #include "tests/nlos/methods/confocal_scene.h"
 
 #include <gtest/gtest.h>
@@ -22,17 +22,13 @@ inline const core::TimeAxis kAxis{0.0, 0.016, 144};
 
 /// A method on a kind of scan.
 struct LawCase {
-    std::string name;
+    MethodCase method;
     core::ScanPattern pattern;
-    std::vector<std::string> overrides;
     bool is_non_negative;
-    bool is_linear;      ///< where the volume is not cut off at 0
-    int num_places = 5;  ///< tried
-    /// Whether the method gathers a point in one bin of squared range, of which there are as many
-    /// as bins: anywhere in such a bin is the same to it.
-    bool gathers_in_squared_range = false;
+    bool is_linear;  ///< where the volume is not cut off at 0
 
-    bool is_wave() const { return name.starts_with("Phasor"); }
+    int num_places() const { return method.iterates() ? 3 : 5; }  ///< tried
+    bool is_wave() const { return method.traits->propagates_wave; }
 };
 
 /// What laws ask of a method: a capture with points in it, a reconstruction, tolerances.
@@ -59,27 +55,26 @@ class ReconstructionLaw : public testing::TestWithParam<LawCase> {
                                     int num_z = 75,
                                     const std::array<double, 2>& z_range_m = {0.3, 0.9}) {
         const auto columns = static_cast<int>(std::sqrt(capture.scan.wall().sensing.size()));
-        nlos::ReconstructSettings settings;
+        nlos::ReconstructSettings settings = GetParam().method.settings();
         settings.volume = {std::array{columns, columns, num_z}, z_range_m};
-        for (const std::string& text : GetParam().overrides) {
-            core::apply_override(settings, text);
-        }
         return nlos::reconstruct(capture, settings, {});
     }
 
     /// The nearest column; one of the two that a point lies between where expectation maximisation
     /// gathers all light in one.
     static double lateral_tolerance_m() {
-        const bool gathers = GetParam().name.starts_with("Solver") &&
-                             GetParam().pattern != core::ScanPattern::Confocal;
+        const bool gathers =
+            GetParam().method.iterates() && GetParam().pattern != core::ScanPattern::Confocal;
         return (gathers ? 1.0 : 0.5) * kPitch_m;
     }
 
-    /// A tenth of a bin in path length, half as much in depth.
+    /// A tenth of a bin in path length, half as much in depth. Methods that iterate gather a point
+    /// in one bin of squared range, of which there are as many as bins: anywhere in such a bin is
+    /// the same to them.
     static double depth_tolerance_m(const core::Vec3& place, const core::TimeAxis& axis = kAxis) {
         const double bin_m2 = std::pow(0.5 * axis.opl_end_m(), 2) / axis.num_bins;
         const double half_bin_m = bin_m2 / (4.0 * place.z());  // dz = dv / (2 z)
-        return 0.05 * axis.bin_width_m + (GetParam().gathers_in_squared_range ? half_bin_m : 0.0);
+        return 0.05 * axis.bin_width_m + (GetParam().method.iterates() ? half_bin_m : 0.0);
     }
 
     /// A random place straight before a wall point, some columns away from the wall's edges.

@@ -29,7 +29,7 @@ using nlos_test::ReconstructionLaw;
 TEST_P(ReconstructionLaw, APointBeforeAColumnIsBrightestAtItsPlace) {
     std::mt19937_64 generator(test_support::seed_of("APointBeforeAColumnIsBrightestAtItsPlace"));
     double sum = 0.0;
-    for (int i = 0; i < GetParam().num_places; ++i) {
+    for (int i = 0; i < GetParam().num_places(); ++i) {
         const Vec3 place = random_place(generator);
         core::Capture capture = dark_capture();
         nlos_test::add_scatterer(capture, place, 4.0);
@@ -40,7 +40,7 @@ TEST_P(ReconstructionLaw, APointBeforeAColumnIsBrightestAtItsPlace) {
         sum += found.z() - place.z();
     }
     // No method leans towards the wall or away from it.
-    EXPECT_NEAR(sum / GetParam().num_places, 0.0, 0.05 * kAxis.bin_width_m);
+    EXPECT_NEAR(sum / GetParam().num_places(), 0.0, 0.05 * kAxis.bin_width_m);
 }
 
 // Bins about as wide in range as columns are apart, so that the image of a point, as wide as a bin,
@@ -54,7 +54,7 @@ TEST_P(ReconstructionLaw, APointAnywhereIsBrightestAtItsPlace) {
     std::mt19937_64 generator(test_support::seed_of("APointAnywhereIsBrightestAtItsPlace"));
     std::uniform_real_distribution<double> lateral(-0.25, 0.25);
     std::uniform_real_distribution<double> depth(0.4, 0.75);
-    for (int i = 0; i < GetParam().num_places; ++i) {
+    for (int i = 0; i < GetParam().num_places(); ++i) {
         const double x = lateral(generator);
         const double y = lateral(generator);
         const Vec3 place(x, y, depth(generator));
@@ -76,7 +76,7 @@ TEST_P(ReconstructionLaw, APointAnywhereIsBrightestAtItsPlace) {
 TEST_P(ReconstructionLaw, APointBetweenColumnsIsSeenWhereItsLightPassesTheNearest) {
     std::mt19937_64 generator(test_support::seed_of("APointBetweenColumnsIsSeen"));
     std::uniform_real_distribution<double> offset(-0.4, 0.4);
-    for (int i = 0; i < GetParam().num_places; ++i) {
+    for (int i = 0; i < GetParam().num_places(); ++i) {
         const Vec3 column = random_place(generator);
         const double x = column.x() + offset(generator) * kPitch_m;
         const double y = column.y() + offset(generator) * kPitch_m;
@@ -176,30 +176,16 @@ TEST_P(ReconstructionLaw, BitsAreTheSameForAnyNumberOfThreads) {
 }
 
 std::vector<LawCase> law_cases() {
-    std::vector<LawCase> cases{
-        {"LctConfocal", ScanPattern::Confocal, {"method=lct", "snr=10"}, true, true},
-        {"SolverConfocal",
-         ScanPattern::Confocal,
-         {"method=solver", "solver.max_iterations=60"},
-         true,
-         false,
-         3,
-         true},
-        {"DlctConfocal", ScanPattern::Confocal, {"method=dlct", "snr=10"}, true, false},
-        {"FkConfocal", ScanPattern::Confocal, {"method=fk"}, true, true}};
-    const std::vector<std::pair<std::string, ScanPattern>> patterns{
-        {"Confocal", ScanPattern::Confocal},
-        {"Single", ScanPattern::Single},
-        {"Exhaustive", ScanPattern::Exhaustive}};
-    for (const auto& [name, pattern] : patterns) {
-        cases.push_back({"Bp" + name, pattern, {"method=bp"}, true, true});
-        if (pattern != ScanPattern::Confocal) {
-            cases.push_back({"Solver" + name, pattern, {"method=solver"}, true, false, 3, true});
+    std::vector<LawCase> cases;
+    for (auto& [method, pattern] : nlos_test::every_method_and_scan()) {
+        const auto is_one_of = [&](std::initializer_list<const MethodTraits*> rows) {
+            return std::ranges::find(rows, method.traits) != rows.end();
+        };
+        const bool is_linear = is_one_of({&kLct, &kFk, &kBp, &kFbp});
+        if (method.iterates() && pattern == ScanPattern::Confocal) {
+            method.overrides.push_back("solver.max_iterations=60");
         }
-        cases.push_back({"Fbp" + name, pattern, {"method=fbp"}, false, true});
-        cases.push_back(
-            {"PhasorFbp" + name, pattern, {"method=fbp", "filter=phasor"}, true, false});
-        cases.push_back({"Phasor" + name, pattern, {"method=phasor"}, true, false});
+        cases.push_back({std::move(method), pattern, !is_one_of({&kFbp}), is_linear});
     }
     return cases;
 }
@@ -207,7 +193,7 @@ std::vector<LawCase> law_cases() {
 INSTANTIATE_TEST_SUITE_P(Methods,
                          ReconstructionLaw,
                          testing::ValuesIn(law_cases()),
-                         [](const auto& law) { return law.param.name; });
+                         [](const auto& law) { return law.param.method.name; });
 
 }  // namespace
 }  // namespace nlos

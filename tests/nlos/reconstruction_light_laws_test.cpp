@@ -126,8 +126,8 @@ TEST_P(ReconstructionLaw, LightFromBehindTheVolumeIsNotInIt) {
     std::ranges::fill(capture.transient.values(), 1.0F);
     const Reconstruction result = run(capture);
     expect_finite(result, "an axis behind the volume");
-    const std::string& name = GetParam().name;
-    if (!name.starts_with("Bp") && !name.starts_with("Lct")) return;
+    const MethodTraits* method = GetParam().method.traits;
+    if (method != &kBp && method != &kLct) return;
     for (const float value : result.volume.values) ASSERT_EQ(value, 0.0F);
 }
 

@@ -5,12 +5,13 @@
 #include "apps/bench/scene.h"
 #include "apps/terminal.h"
 #include "nlos/compare/compare.h"
-#include "nlos/compare/compare_scores.h"
 #include "nlos/detector/detector.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
+#include "nlos/methods/methods.h"
 #include "nlos/pictures/pictures.h"
 #include "renderer/core/json_file.h"
+#include "renderer/core/statistics.h"
 #include "renderer/scene/ground_truth.h"
 
 #include <fmt/core.h>
@@ -117,7 +118,7 @@ optional<double> median_of(const std::vector<const ReconstructionRow*>& rows,
             values.push_back(*(row->*figure));
     }
     if (values.empty()) return std::nullopt;
-    return nlos::median(values);
+    return core::median(values);
 }
 
 }  // namespace
@@ -125,10 +126,11 @@ optional<double> median_of(const std::vector<const ReconstructionRow*>& rows,
 const std::vector<ReconstructionMethod>& reconstruction_methods() {
     static const std::vector<ReconstructionMethod> methods = [] {
         std::vector<ReconstructionMethod> all;
-        // Backprojection first: see SharedCapture::run().
-        for (const char* own : {"bp", "fbp", "lct", "dlct", "fk", "phasor", "solver", "auto"}) {
-            all.push_back({"nlos", "", own});
+        // Backprojection, which is listed first, runs first: see SharedCapture::run().
+        for (const nlos::MethodTraits* own : nlos::kMethods) {
+            all.push_back({"nlos", "", std::string(core::enum_name(own->method))});
         }
+        all.push_back({"nlos", "", "auto"});
         for (const char* peer : {"bp", "lct", "fk", "phasor"}) {
             all.push_back({"y-tal", "ytal_reconstruct", peer});
         }

@@ -5,6 +5,7 @@
 #include "apps/scene_truth.h"
 #include "nlos/compare/compare.h"
 #include "nlos/detector/detector.h"
+#include "nlos/methods/methods.h"
 #include "renderer/core/settings_json.h"
 
 #include <fmt/core.h>
@@ -42,8 +43,6 @@ struct NoiseBenchSettings {
 
 constexpr std::array kPeaks{1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0};
 constexpr std::array kSnrs{0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0};
-
-constexpr std::array kMethods{"lct", "solver", "dlct", "fk", "phasor", "fbp", "bp"};
 
 /// One scene's clean capture, its noisy versions, and the truth to score against.
 class Range {
@@ -140,16 +139,17 @@ BenchResult measure_noise(const NoiseBenchSettings& settings, const core::Progre
     const Range range(settings.scene);
     const int repeats = settings.repeats;
     std::vector<NoiseCurve> curves;
-    for (const std::string method : kMethods) {
+    for (const nlos::MethodTraits* traits : nlos::kMethods) {
+        const std::string method(core::enum_name(traits->method));
         NoiseCurve& curve = curves.emplace_back(NoiseCurve{method, {}});
         for (const double peak : kPeaks) {
-            progress.update(share_of(curves.size() - 1, kMethods.size() + 1), method);
+            progress.update(share_of(curves.size() - 1, nlos::kMethods.size() + 1), method);
             curve.scores.push_back(score_at(range, peak, {"method=" + method}, repeats).first);
         }
     }
     core::Json searches = core::Json::array();
     for (const double peak : kPeaks) {
-        progress.update(share_of(kMethods.size(), kMethods.size() + 1), "snr of lct");
+        progress.update(share_of(nlos::kMethods.size(), nlos::kMethods.size() + 1), "snr of lct");
         searches.push_back(search_snr(range, peak, repeats));
     }
     const auto plot = [&](const std::string& title, double NoiseScore::*value) {

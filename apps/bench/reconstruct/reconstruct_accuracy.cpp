@@ -5,6 +5,8 @@
 #include "apps/scene_truth.h"
 #include "nlos/compare/compare.h"
 #include "nlos/detector/detector.h"
+#include "nlos/formats/capture_file.h"
+#include "nlos/methods/methods.h"
 #include "renderer/core/capture/capture.h"
 #include "renderer/core/depth_map.h"
 #include "renderer/core/json_file.h"
@@ -127,6 +129,19 @@ struct Candidate {
     AccuracyTarget target{};
 };
 
+/// Every method, of which something is asked of these.
+std::vector<Candidate> every_method(const std::vector<Candidate>& with_targets) {
+    std::vector<Candidate> all;
+    for (const nlos::MethodTraits* traits : nlos::kMethods) {
+        Candidate candidate{std::string(core::enum_name(traits->method))};
+        for (const Candidate& other : with_targets) {
+            if (other.method == candidate.method) candidate.target = other.target;
+        }
+        all.push_back(std::move(candidate));
+    }
+    return all;
+}
+
 core::Json measure_accuracy(const Exam& exam, const Candidate& candidate) {
     const ReconstructRun one = run_reconstruction(exam.capture, {"method=" + candidate.method});
     const nlos::Metrics metrics =
@@ -167,22 +182,11 @@ struct AccuracyCase {
 std::vector<AccuracyCase> accuracy_cases(const ReconstructBenchSettings& settings) {
     const std::string folder = settings.scenes_folder;
     // What y-tal reaches on the same letter, or better where more was asked.
-    const std::vector<Candidate> on_letter_t{{"lct", {0.7e-3, 0.95, 0.0}},
-                                             {"solver"},
-                                             {"dlct"},
-                                             {"fk", {2.0e-3, 0.95, 0.0}},
-                                             {"phasor"},
-                                             {"fbp"},
-                                             {"bp", {2.4e-3, 0.67, 0.0}}};
-    const std::vector<Candidate> on_animal{{"lct", {10e-3, 0.0, 0.0}},
-                                           {"solver", {6e-3, 0.0, 0.0}},
-                                           {"dlct", {0.0, 0.0, 10.0}},
-                                           {"fk"},
-                                           {"phasor"},
-                                           {"fbp"},
-                                           {"bp"}};
-    const std::vector<Candidate> all{
-        {"lct"}, {"solver"}, {"dlct"}, {"fk"}, {"phasor"}, {"fbp"}, {"bp"}};
+    const std::vector<Candidate> on_letter_t = every_method(
+        {{"lct", {0.7e-3, 0.95, 0.0}}, {"fk", {2.0e-3, 0.95, 0.0}}, {"bp", {2.4e-3, 0.67, 0.0}}});
+    const std::vector<Candidate> on_animal = every_method(
+        {{"lct", {10e-3, 0.0, 0.0}}, {"solver", {6e-3, 0.0, 0.0}}, {"dlct", {0.0, 0.0, 10.0}}});
+    const std::vector<Candidate> all = every_method({});
     const auto letter_t = [](const char* name, core::ScanPattern pattern) {
         return [name, pattern] { return Exam{name, letter_t_capture(pattern), letter_t_depth}; };
     };

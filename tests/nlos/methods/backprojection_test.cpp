@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/methods/backprojection.h"
 
-#include "nlos/methods/methods.h"
 #include "nlos/reconstruction/surface.h"
 #include "tests/nlos/methods/confocal_scene.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/methods/methods.h"
+#include "nlos/methods/backprojection.h"
 #include "tests/nlos/methods/confocal_scene.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(FilteredBackprojection, FlatVolumesHaveNoLaplacian) {
     for (float& value : c.capture.transient.values()) value = 1.0F;
     const core::Progress progress;
     const Volume flat = backproject(c.input(progress), {}, 1);
-    const Volume filtered = laplacian_backprojection(c.input(progress), {}, 1);
+    const Volume filtered = kFbp.run(c.input(progress), {}, 1);
     for (std::size_t i = 0; i < flat.values.size(); ++i) {
         ASSERT_NEAR(filtered.values[i], 0.0F, 1e-5F * flat.values[i]);
     }
@@ -54,7 +54,7 @@ TEST(FilteredBackprojection, IsTheLaplacianOfAGaussianOfTheSums) {
     nlos_test::add_scatterer(c.capture, Vec3(0.0, 0.025, 0.45), 4.0);
     const core::Progress progress;
     const Volume sums = backproject(c.input(progress), {}, 1);
-    const Volume filtered = laplacian_backprojection(c.input(progress), {}, 1);
+    const Volume filtered = kFbp.run(c.input(progress), {}, 1);
     double expected = 0.0;
     double mean = 0.0;
     double mean_weight = 0.0;

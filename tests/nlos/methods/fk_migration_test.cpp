@@ -26,15 +26,15 @@ Volume migrate(const core::Capture& capture,
     const core::Progress progress;
     ReconstructSettings settings;
     settings.falloff = falloff;
-    return fk_migration({capture.scan.wall(),
-                         capture.time_axis,
-                         capture.transient,
-                         wall,
-                         axes,
-                         z_range_m,
-                         progress},
-                        settings,
-                        1);
+    return kFk.run({capture.scan.wall(),
+                    capture.time_axis,
+                    capture.transient,
+                    wall,
+                    axes,
+                    z_range_m,
+                    progress},
+                   settings,
+                   1);
 }
 
 TEST(FkMigration, FindsAPointOnOblongGridsWithUnequalPitch) {

@@ -29,15 +29,15 @@ Volume transform(const core::Capture& capture,
     ReconstructSettings settings;
     settings.falloff = falloff;
     settings.snr = 10.0;
-    return light_cone_transform({capture.scan.wall(),
-                                 capture.time_axis,
-                                 capture.transient,
-                                 wall,
-                                 axes,
-                                 z_range_m,
-                                 progress},
-                                settings,
-                                1);
+    return kLct.run({capture.scan.wall(),
+                     capture.time_axis,
+                     capture.transient,
+                     wall,
+                     axes,
+                     z_range_m,
+                     progress},
+                    settings,
+                    1);
 }
 
 Vec3 brightest_voxel(const Volume& volume) {

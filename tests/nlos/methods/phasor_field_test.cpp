@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/fourier/unit_phasor.h"
-#include "nlos/methods/methods.h"
+#include "nlos/methods/backprojection.h"
 #include "nlos/methods/virtual_wave.h"
 #include "tests/nlos/methods/confocal_scene.h"
 #include "tests/support/statistics.h"
@@ -119,7 +119,7 @@ TEST(PhasorField, EqualsItsDefiningSumForEveryScan) {
     for (const ScanPattern pattern :
          {ScanPattern::Single, ScanPattern::Confocal, ScanPattern::Exhaustive}) {
         const double error = error_of(
-            pattern, [](const MethodInput& input) { return phasor_field(input, with_wave(), 1); });
+            pattern, [](const MethodInput& input) { return kPhasor.run(input, with_wave(), 1); });
         EXPECT_LT(error, 0.01) << core::enum_name(pattern);
     }
 }
@@ -140,15 +140,15 @@ TEST(PhasorField, ServesListsOfPoints) {
     const WallFrame wall = derive_wall_frame(capture.scan.wall());
     VolumeAxes axes = axes_of(wall);
     const core::Progress progress;
-    const Volume volume = phasor_field({capture.scan.wall(),
-                                        capture.time_axis,
-                                        capture.transient,
-                                        wall,
-                                        axes,
-                                        {0.3, 0.6},
-                                        progress},
-                                       with_wave(),
-                                       1);
+    const Volume volume = kPhasor.run({capture.scan.wall(),
+                                       capture.time_axis,
+                                       capture.transient,
+                                       wall,
+                                       axes,
+                                       {0.3, 0.6},
+                                       progress},
+                                      with_wave(),
+                                      1);
     EXPECT_LT(largest_error(capture, volume), 0.04);
 }
 

@@ -73,13 +73,13 @@ TEST(Slabs, CoverEverythingOnceInRunsOfNearlyEqualSize) {
 TEST(FrequencySlabs, GiveTheSameVolumeInAnyNumber) {
     const Example example(24, 140);
     const MethodInput input = example.input();
-    const Volume lct = light_cone_transform(input, with_snr(), 1);
-    const Volume dlct = directional_light_cone_transform(input, with_snr(), 1);
+    const Volume lct = kLct.run(input, with_snr(), 1);
+    const Volume dlct = kDlct.run(input, with_snr(), 1);
     for (const std::size_t num_slabs : {2, 3, 64}) {
-        EXPECT_LT(test_support::relative_l2(
-                      light_cone_transform(input, with_snr(), num_slabs).values, lct.values),
-                  1e-5);
-        const Volume parts = directional_light_cone_transform(input, with_snr(), num_slabs);
+        EXPECT_LT(
+            test_support::relative_l2(kLct.run(input, with_snr(), num_slabs).values, lct.values),
+            1e-5);
+        const Volume parts = kDlct.run(input, with_snr(), num_slabs);
         EXPECT_LT(test_support::relative_l2(parts.values, dlct.values), 1e-5);
         const auto brightest = std::max_element(dlct.values.begin(), dlct.values.end());
         const auto column = static_cast<std::size_t>(brightest - dlct.values.begin()) / 60;
@@ -104,12 +104,11 @@ TEST(FrequencySlabs, TakeTheMemoryThatIsStatedAndLessInMore) {
     // Most slabs first: memory that a run gives back may stay with the process.
     double last = 0.0;
     for (const std::size_t num_slabs : {8, 2, 1}) {
-        const double lct_bytes = light_cone_transform_bytes(input, with_snr(), num_slabs);
-        EXPECT_LT(growth([&] { light_cone_transform(input, with_snr(), num_slabs); }),
+        const double lct_bytes = kLct.bytes(input, with_snr(), num_slabs);
+        EXPECT_LT(growth([&] { kLct.run(input, with_snr(), num_slabs); }),
                   lct_bytes + kSlack_bytes);
-        const double dlct_bytes =
-            directional_light_cone_transform_bytes(input, with_snr(), num_slabs);
-        EXPECT_LT(growth([&] { directional_light_cone_transform(input, with_snr(), num_slabs); }),
+        const double dlct_bytes = kDlct.bytes(input, with_snr(), num_slabs);
+        EXPECT_LT(growth([&] { kDlct.run(input, with_snr(), num_slabs); }),
                   dlct_bytes + kSlack_bytes);
         EXPECT_GT(lct_bytes, last);
         last = lct_bytes;

@@ -116,7 +116,7 @@ TEST(Surface, OfSteepPartsIsAsSureAsTheLightThatTheyGather) {
         }
     }
     VolumeErrors errors;
-    errors.shares = {0.0, 0.4};
+    errors.plateau = {0.0, 0.4};
     const auto num_surface = [&] {
         return surface_points(find_surface(volume, nullptr, errors, 0.5).depth).positions.size();
     };
