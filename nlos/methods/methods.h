@@ -15,10 +15,9 @@ namespace nlos {
 
 /// What a method needs of a capture beside kMinBins.
 struct MethodNeeds {
-    std::string_view text;  ///< in words, as in "at least 4 sensing points"
-    std::string_view met;   ///< what a capture then is
-    bool takes_other_patterns =
-        false;  /// once convert_to_confocal() turned them into confocal ones
+    std::string_view text;              ///< in words, as in "at least 4 sensing points"
+    std::string_view met;               ///< what a capture then is
+    bool takes_other_patterns = false;  ///< as convert_to_confocal() leaves them
     /// What stands in the way; empty: nothing.
     std::string (*obstacle)(const PreparedCapture& prepared, const VolumeSettings& volume);
 };
