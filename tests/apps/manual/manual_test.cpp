@@ -82,6 +82,12 @@ TEST_F(Manual, EveryCommandOfTheListHasAPageAndIsCompleted) {
     EXPECT_EQ(known.size(), apps::all_commands().size());
 }
 
+TEST_F(Manual, OptionsThatStandForSettingsStateTheirDefaults) {
+    const std::string reference = file_bytes(file("manual/reference.md"));
+    EXPECT_NE(reference.find("| `--max-bounces K` | `3` |"), std::string::npos);
+    EXPECT_NE(reference.find("| `--format NAME` | `hdf5` | hdf5, webdataset |"), std::string::npos);
+}
+
 TEST_F(Manual, PagesAreCleanRoff) {
     if (!has_program("groff")) GTEST_SKIP() << "groff is not there";
     const std::string check = "cd '" + file("manual/man1") +
