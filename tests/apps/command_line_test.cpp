@@ -202,7 +202,7 @@ TEST_F(CommandLine, NoisyCapturesAreCountsOfTheirSeed) {
     EXPECT_TRUE(std::ranges::equal(a.transient.values(), b.transient.values()));
     EXPECT_EQ(a.unit, core::TransientUnit::Counts);
     EXPECT_GT(a.counts_per_radiance.value(), 0.0);
-    EXPECT_EQ(a.scene_info["detector"]["photons"], 5000.0);
+    EXPECT_EQ((*a.scene_info)["detector"]["photons"], 5000.0);
     double sum = 0.0;
     for (const float count : a.transient.values()) sum += count;
     const double wanted = 5000.0 + 0.01 * static_cast<double>(a.transient.values().size());

@@ -10,7 +10,7 @@ namespace apps {
 namespace {
 
 MeasuredProcess run_shell(const std::string& script, const ProcessLimits& limits = {}) {
-    const TemporaryFolder folder;
+    const test_support::TemporaryFolder folder;
     return run_measured({"sh", "-c", script}, folder.file("log"), limits);
 }
 
