@@ -345,7 +345,7 @@ TEST(ThirdBounceScenes, MethodNamesWhatItCannotDo) {
     geometry.objects[0].material.roughness = 0.1;
     const renderer::Scene scene = scene_of(std::move(geometry), scan);
     EXPECT_ERROR_WITH(renderer::render(scene, scan, kAxis, settings_for(0.01), {}),
-                      "narrow glossy lobes");
+                      "(ggx conductor)");
 }
 
 }  // namespace
