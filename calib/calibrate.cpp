@@ -9,6 +9,15 @@
 
 namespace calib {
 
+void validate(const SetupSettings& settings, const std::string& where) {
+    core::check_ranges(settings, where);
+    if (settings.boards) core::check_ranges(*settings.boards, core::join_key(where, "boards"));
+    KnownSettings known = settings.known;
+    for_each_field(known, [&](const std::string& name, const auto& value, const char*) {
+        if (value) core::check_ranges(*value, core::join_key(where, "known." + name));
+    });
+}
+
 SetupSettings read_setup(const std::string& path, const std::vector<std::string>& overrides) {
     SetupSettings settings;
     core::read_value(core::read_json_file(path), path + ": ", settings);
@@ -22,19 +31,12 @@ SetupSettings read_setup(const std::string& path, const std::vector<std::string>
     if (settings.boards) {
         for (std::string& image : settings.boards->images) image = (folder / image).string();
     }
-    for (const auto* known : {&settings.known.wall_distance_m,
-                              &settings.known.galvo_gain,
-                              &settings.known.time_zero_m}) {
-        if (*known && !((*known)->sigma > 0.0)) {
-            throw core::Error(path + ": known",
-                              fmt::format("found sigma {}", (*known)->sigma),
-                              "must be positive");
-        }
-    }
+    validate(settings, path + ": ");
     return settings;
 }
 
 Calibration calibrate(const SetupSettings& settings, const core::Capture& capture) {
+    validate(settings, "");
     const std::size_t count = capture.transient.num_pairs();
     const auto require_count = [&](std::size_t found, const std::string& key) {
         if (found == count) return;

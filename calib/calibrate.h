@@ -36,7 +36,7 @@ struct SetupSettings {
 template <class Visitor>
 void for_each_field(KnownValue& s, Visitor&& visit) {
     visit("value", s.value, "what was measured");
-    visit("sigma", s.sigma, "its standard deviation");
+    visit("sigma", s.sigma, core::above(0, "its standard deviation"));
 }
 
 template <class Visitor>
@@ -53,7 +53,7 @@ void for_each_field(SetupSettings& s, Visitor&& visit) {
     visit("command_unit", s.command_unit, "of the commands: volt leaves the gain open");
     visit("boards", s.boards, "chessboard photographs of a camera that sees the wall");
     visit("spots_px", s.spots_px, "where that camera sees the laser for each command [px]");
-    visit("spot_sigma_px", s.spot_sigma_px, "standard deviation of these [px]");
+    visit("spot_sigma_px", s.spot_sigma_px, core::above(0, "standard deviation of these [px]"));
     visit("known", s.known, "what was measured by other means");
     visit("response", s.response, "shape of the instrument response");
 }
@@ -64,6 +64,9 @@ struct Calibration {
     SetupGeometry setup;
     std::optional<CameraCalibration> camera;
 };
+
+/// Throws core::Error naming the setting that is out of range.
+void validate(const SetupSettings& settings, const std::string& where);
 
 /// Reads SETUP.json; paths become relative to the working folder.
 SetupSettings read_setup(const std::string& path, const std::vector<std::string>& overrides);

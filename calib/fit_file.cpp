@@ -20,17 +20,23 @@ Vec3 vector_of(const Json& json) {
     return {value_of(json.at(0)), value_of(json.at(1)), value_of(json.at(2))};
 }
 
+// Values, or their standard deviations; "wall.bow_m" becomes bow_m of the object wall.
+void write_estimates(const Estimates& estimates, bool sigmas, Json& json) {
+    for (const auto& [key, estimate] : estimates) {
+        const std::size_t dot = key.find('.');
+        Json& target =
+            dot == std::string::npos ? json[key] : json[key.substr(0, dot)][key.substr(dot + 1)];
+        target = sigmas ? estimate.sigma : estimate.value;
+    }
+}
+
 // What a result says of every quantity: its values, or their standard deviations.
 Json estimates_json(const FitResult& result, bool sigmas) {
-    const auto part = sigmas ? &Estimate::sigma : &Estimate::value;
     Json json;
     json["objects"] = Json::object();
-    json["scale"] = result.scale.*part;
+    json["scale"] = nullptr;  // where the contract has it
     json["point_scatterers"] = Json::array();
-    json["time_zero_m"] = result.time_zero_m.*part;
-    json["ambient"] = result.ambient.*part;
-    json["response_fwhm_ps"] = result.response_fwhm_ps.*part;
-    json["wall"] = {{"bow_m", result.wall_bow_m.*part}, {"scale", result.wall_scale.*part}};
+    write_estimates(result.estimates, sigmas, json);
     for (const FittedObject& o : result.objects) {
         const auto& q = o.rotation;
         Json& target = json["objects"][o.name];
@@ -40,14 +46,13 @@ Json estimates_json(const FitResult& result, bool sigmas) {
         } else {
             target["rotation_wxyz"] = {q.w(), q.x(), q.y(), q.z()};
         }
-        target["size"] = sigmas ? o.size_sigma : o.size;
-        target["albedo"] = sigmas ? o.albedo_sigma : o.albedo;
+        write_estimates(o.numbers, sigmas, target);
         if (!o.heights_m.empty()) target["heights_m"] = sigmas ? o.heights_sigma_m : o.heights_m;
     }
     for (const FittedPoint& p : result.points) {
         const Vec3& position = sigmas ? p.position_sigma_m : p.position_m;
         json["point_scatterers"].push_back(
-            {position.x(), position.y(), position.z(), sigmas ? p.albedo_sigma : p.albedo});
+            {position.x(), position.y(), position.z(), sigmas ? p.albedo.sigma : p.albedo.value});
     }
     return json;
 }
@@ -92,14 +97,15 @@ FitResult read_fit(const std::string& path) {
             const Json& q = item.at("rotation_wxyz");
             object.rotation = Eigen::Quaterniond(
                 value_of(q.at(0)), value_of(q.at(1)), value_of(q.at(2)), value_of(q.at(3)));
-            object.size = value_of(item.at("size"));
-            object.albedo = value_of(item.at("albedo"));
+            for (const auto& [key, value] : item.items()) {
+                if (!value.is_array()) object.numbers.add(key, {value_of(value)});
+            }
             const Json& sigma = json.at("sigma").at("objects").at(name);
             object.position_sigma_m = vector_of(sigma.at("position_m"));
             object.rotation_sigma_deg = vector_of(sigma.at("rotation_deg"));
         }
         for (const Json& item : json.at("point_scatterers")) {
-            result.points.push_back({vector_of(item), value_of(item.at(3)), {}, kFixed});
+            result.points.push_back({vector_of(item), Vec3::Zero(), {value_of(item.at(3))}});
         }
         result.seconds = value_of(json.at("seconds"));
         result.converged = json.at("converged").get<bool>();

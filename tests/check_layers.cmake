@@ -27,6 +27,7 @@ set(floors_nlos
     "nlos")
 set(floors_calib
     "calib/statistics|calib/model"
+    "calib/model/parameters"
     "calib/forward|calib/setup|calib/track"
     "calib/fit|calib/adjoint"
     "calib")
@@ -63,7 +64,6 @@ set(third_nlos/containers/writers "zlib\\.h|hdf5\\.h|matio\\.h|zip\\.h")
 set(third_nlos/fourier "fftw3\\.h")
 set(third_nlos/canvas "cairo-|opencv2/imgproc|isa-l/")
 set(third_calib/setup "ceres/|opencv2/|png\\.h|turbojpeg\\.h")
-set(third_calib/forward "ceres/")
 set(third_calib/fit "ceres/")
 set(third_apps "CLI/")
 set(third_apps/batch "xxhash\\.h")

@@ -166,14 +166,12 @@ void describe_fit(std::string& out, const std::string& path) {
              fit.expected_deviance);
     for (const calib::FittedObject& object : fit.objects) {
         const auto& p = object.position_m;
-        add_line(out,
-                 "{}: at ({:.4f}, {:.4f}, {:.4f}) m, size {:.4f}, albedo {:.4f}",
-                 object.name,
-                 p.x(),
-                 p.y(),
-                 p.z(),
-                 object.size,
-                 object.albedo);
+        std::string numbers;
+        for (const auto& [name, estimate] : object.numbers) {
+            numbers += fmt::format(", {} {:.4f}", name, estimate.value);
+        }
+        add_line(
+            out, "{}: at ({:.4f}, {:.4f}, {:.4f}) m{}", object.name, p.x(), p.y(), p.z(), numbers);
     }
     add_line(out, "{} point scatterers", fit.points.size());
 }

@@ -27,26 +27,28 @@ std::string place_text(const core::Vec3& position_m, const core::Vec3& sigma_m) 
 }
 
 void print_object(const calib::FittedObject& object) {
-    print("{:<14} {}, turned +- {:.2g} deg, size {}, albedo {}\n",
+    print("{:<14} {}, turned +- {:.2g} deg",
           object.name,
           place_text(object.position_m, object.position_sigma_m),
-          object.rotation_sigma_deg.norm(),
-          estimate_text(object.size, object.size_sigma),
-          estimate_text(object.albedo, object.albedo_sigma));
+          object.rotation_sigma_deg.norm());
+    for (const auto& [name, estimate] : object.numbers) {
+        print(", {} {}", name, estimate_text(estimate.value, estimate.sigma));
+    }
+    print("\n");
 }
 
 void note(const calib::FitResult& result) {
     core::Json& fields = outcome();
     for (const calib::FittedObject& object : result.objects) {
-        fields["objects"].push_back(
-            {{"name", object.name},
-             {"position_m", core::write_value(object.position_m)},
-             {"position_sigma_m", core::write_value(object.position_sigma_m)},
-             {"rotation_sigma_deg", core::write_value(object.rotation_sigma_deg)},
-             {"size", object.size},
-             {"size_sigma", object.size_sigma},
-             {"albedo", object.albedo},
-             {"albedo_sigma", object.albedo_sigma}});
+        core::Json json{{"name", object.name},
+                        {"position_m", core::write_value(object.position_m)},
+                        {"position_sigma_m", core::write_value(object.position_sigma_m)},
+                        {"rotation_sigma_deg", core::write_value(object.rotation_sigma_deg)}};
+        for (const auto& [name, estimate] : object.numbers) {
+            json[name] = estimate.value;
+            json[name + "_sigma"] = estimate.sigma;
+        }
+        fields["objects"].push_back(std::move(json));
     }
     for (const calib::FittedPoint& point : result.points) {
         fields["points"].push_back(

@@ -96,7 +96,7 @@ TrackSensor sensor_of(const core::Capture& capture,
     const auto recorded = core::recorded_sensor(capture);
     if (recorded && settings.sensor.empty()) {
         settings.pose = recorded->pose;
-        const bool is_free = settings.free == calib::TrackUnknown::SensorPose;
+        const bool is_free = settings.moves_sensor();
         if (settings.poses.empty() && !is_free) settings.poses = recorded->poses;
         if (!settings.wall) settings.wall = recorded->wall;
         use_model(recorded->model, settings, sensor);

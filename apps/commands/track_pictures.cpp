@@ -126,7 +126,7 @@ void draw_wall(const calib::TrackSettings& settings, const calib::TrackSensor& s
 void draw_known(const std::vector<calib::FrameEstimate>& frames,
                 const calib::TrackSettings& settings,
                 Plan& plan) {
-    if (settings.free == calib::TrackUnknown::SensorPose) {
+    if (settings.moves_sensor()) {
         plan.mark(plan.place(*settings.target.position_m), 0.03, kSensorColour);
         plan.legend("target, which stands", kSensorColour);
         return;
@@ -161,7 +161,7 @@ void draw_paths(const std::vector<calib::FrameEstimate>& frames,
                          colour_of(id));
         }
     }
-    const char* moving = settings.free == calib::TrackUnknown::Target ? "target" : "sensor";
+    const char* moving = settings.moves_sensor() ? "sensor" : "target";
     for (const auto& [id, path] : paths) {
         std::vector<Point> line;
         for (const auto* target : path)

@@ -140,8 +140,9 @@ std::vector<Fact> fit_facts(const calib::FitResult& fit, const core::Json& json)
         if (object.rotation_sigma_deg.norm() > 0.0) {
             text += ", turned +- " + short_number(object.rotation_sigma_deg.norm()) + " deg";
         }
-        text += ", size " + estimate_text(object.size, object.size_sigma) + ", albedo " +
-                estimate_text(object.albedo, object.albedo_sigma);
+        for (const auto& [name, estimate] : object.numbers) {
+            text += ", " + name + " " + estimate_text(estimate.value, estimate.sigma);
+        }
         facts.emplace_back(object.name, text);
     }
     for (std::size_t i = 0; i < fit.points.size(); ++i) {

@@ -28,10 +28,6 @@ PairEvaluator::PairEvaluator(const AdjointScene& scene)
     light_.axis = scene.axis;
     light_.sigma_m = scene.sigma_m;
     light_.radiance_factor = scene.radiance_factor;
-    for (MovedWallPoint& end : light_.ends) {
-        end.position_gradient.fill(Vec3::Zero());
-        end.normal_gradient.fill(Vec3::Zero());
-    }
 }
 
 void PairEvaluator::look_at(std::size_t pair) {

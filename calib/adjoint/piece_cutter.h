@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "calib/forward/wall_motion.h"
+#include "calib/model/wall_motion.h"
 #include "renderer/core/types.h"
 
 #include <array>

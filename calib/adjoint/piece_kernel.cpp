@@ -46,10 +46,9 @@ std::array<Vec3, 3> ShapeGradients::by_corners(const ElementShape& shape) const 
 }
 
 Path PieceKernel::path_to(const Vec3& x, const Vec3& normal, Gradients gradients) const {
-    const PathEndpoints ends{&light_.ends[0], &light_.ends[1]};
     const Leg sensor = make_leg(light_.ends[1], x, normal, gradients);
-    if (light_.is_confocal) return join_legs(ends, sensor, sensor, gradients);
-    return join_legs(ends, make_leg(light_.ends[0], x, normal, gradients), sensor, gradients);
+    if (light_.is_confocal) return join_legs(sensor, sensor, gradients);
+    return join_legs(make_leg(light_.ends[0], x, normal, gradients), sensor, gradients);
 }
 
 PieceKernel::Paths PieceKernel::find_paths(const ElementShape& element,

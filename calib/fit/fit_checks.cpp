@@ -16,7 +16,7 @@ namespace {
 constexpr double kNotableStep = 5.0;
 constexpr std::size_t kMaxNamed = 8;
 
-void warn_of_cut_light(const core::TimeAxis& axis, FitResult& result) {
+void warn_of_cut_light(const core::TimeAxis& axis, double ambient, FitResult& result) {
     constexpr double kNotableShare = 0.05;
     const auto bins = static_cast<std::size_t>(result.axis.num_bins);
     const auto pairs = static_cast<double>(result.model.size() / bins);
@@ -29,7 +29,7 @@ void warn_of_cut_light(const core::TimeAxis& axis, FitResult& result) {
         for (std::size_t b = 0; b < bins; ++b) most = std::max(most, result.model[i + b]);
     }
     const auto warn = [&](double light, const char* end, double opl_m) {
-        if (light - result.ambient.value <= kNotableShare * most) return;
+        if (light - ambient <= kNotableShare * most) return;
         result.warnings.push_back(fmt::format(
             "the model's light reaches beyond the {} of the time axis at {:.3f} m; what "
             "lies there is not fitted",
@@ -148,22 +148,43 @@ void warn_of_patterns(FitResult& result) {
                     correlation));
 }
 
-// What is fixed but could be free.
-struct Freedom {
-    ParameterKind kind;
-    const char* name;
-    double unit;
-    const char* unit_name;
-};
-
+// Frees what score tests look at, as far as the response allows.
 FreeSettings with_all_freedoms(const FitDriver& driver) {
     FreeSettings free = driver.settings.free;
-    const core::ResponseSettings& response = driver.settings.response;
-    free.time_zero = true;
-    free.wall_bow = free.wall_scale = true;
-    free.response_fwhm =
-        response.jitter_fwhm_ps > 0.0 && response.tail_ps == 0.0 && response.curve.empty();
+    for (const Parameter* row : parameters()) {
+        if (row->misfit.name == nullptr) continue;
+        if (row->refusal != nullptr && row->refusal(driver.settings.response)) continue;
+        free.parameters.insert(row->name);
+    }
     return free;
+}
+
+// What is free beside one block of a model with more freedoms, and then that block.
+std::vector<Eigen::Index> columns_beside(const SceneModel& fitted,
+                                         const SceneModel& model,
+                                         const ParameterBlock& block) {
+    std::vector<Eigen::Index> columns;
+    for (const ParameterBlock& other : model.blocks()) {
+        if (fitted.find(*other.row, other.item) == nullptr) continue;
+        for (int c = 0; c < other.columns; ++c) columns.push_back(other.first_column + c);
+    }
+    columns.push_back(block.first_column);
+    return columns;
+}
+
+void warn_of_high_values(const SceneModel& model, FitResult& result) {
+    for (const ParameterBlock& block : model.blocks()) {
+        if (block.row->owner != Owner::Body || block.row->key == nullptr) continue;
+        const FittedObject& object = result.objects[block.item];
+        const double value = object.numbers[block.row->key].value;
+        if (!(value > block.row->highest)) continue;
+        result.warnings.push_back(fmt::format(
+            "{}: its {} of {:.3f} is above {:g}: data or units are not what the model assumes",
+            object.name,
+            block.row->name,
+            value,
+            block.row->highest));
+    }
 }
 
 // Score tests: how far one Newton step would move each fixed quantity, were it free beside all
@@ -171,8 +192,7 @@ FreeSettings with_all_freedoms(const FitDriver& driver) {
 void warn_of_misfits(const FitDriver& driver, const SceneState& state, FitResult& result) {
     FitSettings settings = driver.settings;
     settings.free = with_all_freedoms(driver);
-    const SceneModel model(
-        driver.input.geometry, settings, driver.model->find(ParameterKind::Scale) != nullptr);
+    const SceneModel model(driver.input.geometry, settings);
     const FitDriver::Stage stage = driver.make_stage(model, 0.0);
     stage.model->refresh(state);
     stage.objective->evaluate(state, renderer::Gradients::With);
@@ -182,21 +202,10 @@ void warn_of_misfits(const FitDriver& driver, const SceneState& state, FitResult
         score -= rows.jacobian.transpose() * rows.residual;
     }
     const Eigen::MatrixXd information = stage.objective->fisher(state, {});
-    for (const Freedom& freedom :
-         {Freedom{ParameterKind::TimeZero, "time zero", 1e3, "mm of path"},
-          Freedom{ParameterKind::ResponseWidth, "the response's width", 100.0, "%"},
-          Freedom{ParameterKind::WallBow, "the wall's bow", 1e3, "mm"},
-          Freedom{ParameterKind::WallScale, "the wall's scale", 100.0, "%"}}) {
-        if (driver.model->find(freedom.kind) != nullptr) continue;
-        const ParameterBlock* block = model.find(freedom.kind);
-        if (block == nullptr) continue;
-        // Beside what is free, but not beside the other fixed quantities.
-        std::vector<Eigen::Index> columns;
-        for (const ParameterBlock& other : model.blocks()) {
-            if (driver.model->find(other.kind, other.item) == nullptr) continue;
-            for (int c = 0; c < other.columns; ++c) columns.push_back(other.first_column + c);
-        }
-        columns.push_back(block->first_column);
+    for (const ParameterBlock& block : model.blocks()) {
+        const MisfitWords& words = block.row->misfit;
+        if (words.name == nullptr || driver.model->find(*block.row) != nullptr) continue;
+        const std::vector<Eigen::Index> columns = columns_beside(*driver.model, model, block);
         const Eigen::MatrixXd part = information(columns, columns);
         const Eigen::VectorXd right = score(columns);
         const Eigen::MatrixXd covariance = generalized_inverse(part);
@@ -205,11 +214,10 @@ void warn_of_misfits(const FitDriver& driver, const SceneState& state, FitResult
         if (!(std::abs(step) > kNotableStep * sigma)) continue;
         result.warnings.push_back(
             fmt::format("the data ask for another value of {}: {:+.3g} {} ({:.0f} standard "
-                        "deviations); free or "
-                        "correct it",
-                        freedom.name,
-                        freedom.unit * step,
-                        freedom.unit_name,
+                        "deviations); free or correct it",
+                        words.name,
+                        words.unit * step,
+                        words.unit_name,
                         std::abs(step) / sigma));
     }
 }
@@ -238,21 +246,19 @@ void add_warnings(const FitDriver& driver,
                   const FitDriver::Stage& stage,
                   const SceneState& state,
                   FitResult& result) {
-    warn_of_cut_light(driver.data.axis, result);
+    warn_of_cut_light(driver.data.axis, ambient_of(stage, state), result);
     for (std::string& text :
          core::detector_warnings(driver.input.capture, driver.settings.response)) {
         result.warnings.push_back(std::move(text));
     }
-    if (state.has_ambient && state.log_ambient < driver.solve_settings.lowest_log_ambient + 0.01) {
-        result.warnings.push_back("ambient: at its lower bound");
+    for (const ParameterBlock& block : driver.model->blocks()) {
+        const bool is_bounded = block.row->effect == Effect::AddsLight;
+        if (is_bounded &&
+            block.row->numbers(state)[0] < driver.solve_settings.lowest_log_ambient + 0.01) {
+            result.warnings.push_back(block.names.front() + ": at its lower bound");
+        }
     }
-    for (const FittedObject& object : result.objects) {
-        if (object.albedo <= 1.0 || object.albedo_sigma == kFixed) continue;
-        result.warnings.push_back(fmt::format(
-            "{}: its albedo of {:.3f} is above 1: data or units are not what the model assumes",
-            object.name,
-            object.albedo));
-    }
+    warn_of_high_values(*driver.model, result);
     if (driver.is_poisson) {
         warn_of_deviance(driver, stage.data->min_mean, result);
         check_for_light(stage.data->min_mean, result);
@@ -271,9 +277,8 @@ void add_warnings(const FitDriver& driver,
 
 void check_dependence(const SceneModel& model, FitResult& result) {
     for (const ParameterBlock& block : model.blocks()) {
-        const bool is_place = block.kind == ParameterKind::Translation ||
-                              block.kind == ParameterKind::Rotation ||
-                              block.kind == ParameterKind::PointPosition;
+        const bool is_place =
+            block.row->effect == Effect::Translates || block.row->effect == Effect::Rotates;
         if (!is_place || result.sigma.segment(block.first_column, block.columns).allFinite())
             continue;
         result.converged = false;

@@ -45,24 +45,25 @@ Vec3 surface_center(const ModelBody& body) {
     return sum / static_cast<double>(body.vertices.size());
 }
 
-bool is_free(const FreeObject& object) {
-    return object.translation || object.rotation;
+bool has_free_pose(const SceneModel& model, std::size_t body) {
+    return model.is_free(Owner::Body, body, Effect::Translates) ||
+           model.is_free(Owner::Body, body, Effect::Rotates);
 }
 
 void check_start(const FitDriver& driver, const SceneState& state) {
     const core::WallScan& scan = driver.input.capture.scan.wall();
     for (std::size_t b = 0; b < driver.model->bodies().size(); ++b) {
-        if (!is_free(driver.model->bodies()[b].free)) continue;
+        if (!has_free_pose(*driver.model, b)) continue;
+        const ModelBody& body = driver.model->bodies()[b];
         bool is_in_front = false;
-        for (std::size_t v = 0; v < driver.model->bodies()[b].vertices.size() && !is_in_front;
-             ++v) {
-            const Vec3 p = driver.model->vertex_world(state.bodies[b], b, v);
+        for (std::size_t v = 0; v < body.vertices.size() && !is_in_front; ++v) {
+            const Vec3 p = body.vertex_world(state.bodies[b], v);
             for (std::size_t i = 0; i < scan.sensing.size() && !is_in_front; ++i) {
                 is_in_front = scan.sensing.normals[i].dot(p - scan.sensing.positions[i]) > 0.0;
             }
         }
         if (is_in_front) continue;
-        throw core::Error("model: start of " + driver.model->bodies()[b].name,
+        throw core::Error("model: start of " + body.name,
                           "found it behind the relay wall",
                           "must be on the hidden side, or use start: search");
     }
@@ -71,7 +72,7 @@ void check_start(const FitDriver& driver, const SceneState& state) {
 std::vector<NamedState> searched(const FitDriver& driver, const Vec3& center) {
     std::size_t target = driver.model->bodies().size();
     for (std::size_t b = 0; b < driver.model->bodies().size(); ++b) {
-        if (!is_free(driver.model->bodies()[b].free)) continue;
+        if (!has_free_pose(*driver.model, b)) continue;
         if (target < driver.model->bodies().size()) {
             throw core::Error("model: start",
                               "found several objects with a free pose",
@@ -83,11 +84,16 @@ std::vector<NamedState> searched(const FitDriver& driver, const Vec3& center) {
     SceneState state = driver.model->start();
     if (target == driver.model->bodies().size()) return {{"search", state}};
     const ModelBody& body = driver.model->bodies()[target];
-    const int count = body.free.rotation ? driver.settings.search_rotations : 1;
+    const auto is_free = [&](Effect effect) {
+        return driver.model->is_free(Owner::Body, target, effect);
+    };
+    const int count = is_free(Effect::Rotates) ? driver.settings.search_rotations : 1;
     for (const Eigen::Quaterniond& rotation : spread_rotations(count)) {
         BodyState& pose = state.bodies[target];
         pose.rotation = rotation;
-        if (body.free.translation) pose.position_m = center - rotation * surface_center(body);
+        if (is_free(Effect::Translates)) {
+            pose.position_m = center - rotation * surface_center(body);
+        }
         result.emplace_back(fmt::format("rotation {}", result.size()), state);
     }
     return result;
@@ -113,17 +119,12 @@ void place_points(const FitDriver& driver, SceneState& state) {
                                      driver.offset_m,
                                      static_cast<int>(state.points.size()));
     }
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        state.points[i].position_m = positions[i];
-        state.points[i].log_albedo = std::log(1e-3);
-    }
+    for (std::size_t i = 0; i < positions.size(); ++i) state.points[i].position_m = positions[i];
 }
 
 // All of a state's light in the data's bins, without ambient light.
 double light_of(const FitDriver::Stage& stage, const SceneState& state) {
-    SceneState dark = state;
-    dark.has_ambient = false;
-    stage.model->update(dark, renderer::Gradients::Without);
+    stage.model->update(without_added_light(state), renderer::Gradients::Without);
     std::vector<double> sums(stage.model->scan().num_pairs());
     core::parallel_for(sums.size(), [&](std::size_t pair) {
         PairModel model;
@@ -147,12 +148,11 @@ void match_brightness(const FitDriver& driver, FitDriver::Stage& stage, SceneSta
     if (!(light > 0.0)) return;
     const double change = std::log((total - ambient) / light);
     if (!std::isfinite(change)) return;
-    if (driver.model->find(ParameterKind::Scale) != nullptr) state.log_scale += change;
-    if (driver.scale_is_unknown) return;
-    for (std::size_t b = 0; b < state.bodies.size(); ++b) {
-        if (driver.model->bodies()[b].free.albedo) state.bodies[b].log_albedo += change;
+    for (const ParameterBlock& block : driver.model->blocks()) {
+        if (block.row->effect != Effect::Multiplies) continue;
+        if (driver.scale_is_unknown && block.row->owner != Owner::Scene) continue;
+        block.row->numbers(state, block.item)[0] += change;
     }
-    for (PointState& point : state.points) point.log_albedo += change;
 }
 
 }  // namespace
@@ -163,11 +163,12 @@ FitDriver::FitDriver(const FitInput& fit_input, const core::Progress& progress)
     settings.response = core::resolve_response(settings.response, input.capture, "model: response");
     response = core::make_response(settings.response, "model: response");
     response_sigma_m = std::sqrt(core::moments(response).variance_m2);
-    const bool is_gaussian = std::holds_alternative<core::GaussianResponse>(response);
-    if (settings.free.response_fwhm && !(is_gaussian && response_sigma_m > 0.0)) {
-        throw core::Error("model: free.response_fwhm",
-                          "found a response without a width to scale",
-                          "needs response.jitter_fwhm_ps alone");
+    for (const Parameter* row : parameters()) {
+        if (!settings.free.parameters.contains(row->name) || row->refusal == nullptr) continue;
+        if (const auto refusal = row->refusal(settings.response)) {
+            throw core::Error(
+                fmt::format("model: free.{}", row->name), refusal->first, refusal->second);
+        }
     }
     is_poisson = settings.residual == ResidualKind::Poisson ||
                  (settings.residual == ResidualKind::Auto && is_integer_valued(input.capture));
@@ -180,23 +181,20 @@ FitDriver::FitDriver(const FitInput& fit_input, const core::Progress& progress)
         offset_m.push_back(input.capture.scan.wall().device_legs_m(pair));
     }
 
-    // Data of unknown scale leave one albedo open: the first free one stays at its start.
     scale_is_unknown = input.capture.unit == core::TransientUnit::Counts &&
                        !input.capture.counts_per_radiance && !input.geometry.objects.empty() &&
                        !settings.free.objects.empty();
-    if (scale_is_unknown) {
-        for (FreeObject& object : settings.free.objects) {
-            if (!object.albedo) continue;
-            object.albedo = false;
-            fixed_albedo = object.name;
-            break;
+    if (scale_is_unknown) hold_one_albedo();
+    if (!is_poisson) elimination = {scale_is_unknown, false};
+    for (const Parameter* row : parameters()) {
+        if (row->owner != Owner::Scene) continue;
+        if (row->effect == Effect::Multiplies && scale_is_unknown && is_poisson) {
+            settings.free.parameters.insert(row->name);
+        } else if (row->effect == Effect::AddsLight && !is_poisson) {
+            elimination.ambient = settings.free.parameters.erase(row->name) > 0;
         }
     }
-    if (!is_poisson) {
-        elimination = {scale_is_unknown, settings.free.ambient};
-        settings.free.ambient = false;
-    }
-    model = std::make_unique<SceneModel>(input.geometry, settings, scale_is_unknown && is_poisson);
+    model = std::make_unique<SceneModel>(input.geometry, settings);
     ambient_guess = quietest_level(data);
     is_cut = light_is_cut(data, ambient_guess);
     tolerance = settings.element_tolerance.value_or(is_poisson ? tolerance_for(total)
@@ -204,10 +202,21 @@ FitDriver::FitDriver(const FitInput& fit_input, const core::Progress& progress)
 
     solve_settings.loss = settings.loss;
     solve_settings.loss_scale = settings.loss_scale;
-    solve_settings.laplacian_weight = settings.laplacian_weight;
-    solve_settings.time_zero_sigma_m = settings.free.time_zero_sigma_m;
+    solve_settings.prior = {settings.laplacian_weight, settings.free.prior_sigma};
     solve_settings.lowest_log_ambient = std::log(data.min_mean);
     solve_settings.stop_requested = progress.stop_requested;
+}
+
+// Data of unknown scale leave one albedo open: the first free one stays at its start.
+void FitDriver::hold_one_albedo() {
+    for (FreeObject& object : settings.free.objects) {
+        for (const Parameter* row : parameters()) {
+            const bool is_factor = row->owner == Owner::Body && row->effect == Effect::Multiplies;
+            if (!is_factor || object.parameters.erase(row->name) == 0) continue;
+            fixed_albedo = object.name;
+            return;
+        }
+    }
 }
 
 FitDriver::Stage FitDriver::make_stage(const SceneModel& free_model,
@@ -292,7 +301,9 @@ std::vector<NamedState> FitDriver::starts() const {
     }
     for (auto& [name, state] : result) {
         place_points(*this, state);
-        state.log_ambient = std::log(std::max(ambient_guess, 10.0 * data.min_mean));
+        for (const ParameterBlock* block : model->find(Owner::Scene, 0, Effect::AddsLight)) {
+            block->row->numbers(state)[0] = std::log(std::max(ambient_guess, 10.0 * data.min_mean));
+        }
     }
     return result;
 }
@@ -316,7 +327,7 @@ SolveSummary FitDriver::solve(Stage& stage,
                               const std::function<void(int)>& report) const {
     SolveSettings limits = solve_settings;
     limits.max_iterations = max_iterations;
-    if (stage.blur_m > 0.0) limits.laplacian_weight *= kBlurredSmoothness;
+    if (stage.blur_m > 0.0) limits.prior.laplacian_weight *= kBlurredSmoothness;
     const int rounds = stage.blur_m > 0.0 ? kBlurredVisibilityRounds : kMaxVisibilityRounds;
     SolveSummary total;
     limits.report = [&](int iterations) { report(total.iterations + iterations); };

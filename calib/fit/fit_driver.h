@@ -53,6 +53,8 @@ struct FitDriver {
                        int max_iterations,
                        const std::function<void(int)>& report) const;
 
+    void hold_one_albedo();
+
     const FitInput& input;
     FitSettings settings;  ///< without the freedoms that elimination takes out
     core::InstrumentResponse response;

@@ -27,9 +27,11 @@ FitObjective::FitObjective(ForwardModel& model,
     : model_(model),
       data_(data),
       is_poisson_(is_poisson),
-      elimination_(elimination),
       num_columns_(num_columns),
-      rows_(model.scan().num_pairs()) {}
+      rows_(model.scan().num_pairs()) {
+    if (elimination.scale) eliminated_.push_back(0);
+    if (elimination.ambient) eliminated_.push_back(1);
+}
 
 void FitObjective::evaluate(const SceneState& state, Gradients gradients) {
     model_.update(state, gradients);
@@ -88,59 +90,51 @@ MatrixXd FitObjective::linear_gram(std::size_t pair, const PairModel& expected) 
     return gram.selfadjointView<Eigen::Lower>();
 }
 
-// With r = a m + b - y and (a, b) the least-squares solution over B = [m 1], B^T r = 0 gives
-// (B^T B) d(a, b) = -(dm^T r, 0) - B^T dm a for every parameter, and dr = a dm + m da + db.
+// Maps [dm m 1 y] to [J r], r = a m + b - y.
 void FitObjective::eliminate(std::vector<MatrixXd>& grams, bool with_gradients) {
     const Eigen::Index columns = with_gradients ? num_columns_ : 0;
+    MatrixXd total = MatrixXd::Zero(columns + 3, columns + 3);
+    for (const MatrixXd& gram : grams) total += gram;
+    solve_linear_factors(total, columns);
+    differentiate_linear_factors(total, columns);
+
+    MatrixXd transform = MatrixXd::Zero(columns + 3, columns + 1);
+    transform.topLeftCorner(columns, columns).diagonal().setConstant(linear_[0]);
+    for (std::size_t i = 0; i < eliminated_.size(); ++i) {
+        transform.row(columns + eliminated_[i]).head(columns) =
+            linear_gradient_.row(static_cast<Eigen::Index>(i));
+    }
+    transform.col(columns).tail<3>() << linear_[0], linear_[1], -1.0;
+    for (MatrixXd& gram : grams) gram = transform.transpose() * gram * transform;
+}
+
+// The least-squares solution (a, b) over the eliminated part B of [m 1], B^T r = 0.
+void FitObjective::solve_linear_factors(const MatrixXd& total, Eigen::Index columns) {
+    linear_ = {1.0, 0.0};
+    if (eliminated_.empty()) return;
+    std::vector<Eigen::Index> basis;
+    for (const Eigen::Index i : eliminated_) basis.push_back(columns + i);
+    const Eigen::Index y = columns + 2;
+    VectorXd right = total(basis, y);
+    const bool has_known_scale = eliminated_.front() != 0;
+    if (has_known_scale) right -= total(basis, columns);
+    linear_inverse_ = generalized_inverse(total(basis, basis));
+    linear_(eliminated_) = linear_inverse_ * right;
+}
+
+// (B^T B) d(a, b) = -(dm^T r, 0) - B^T dm a for every parameter, and dr = a dm + m da + db.
+void FitObjective::differentiate_linear_factors(const MatrixXd& total, Eigen::Index columns) {
     const Eigen::Index m = columns;
     const Eigen::Index one = columns + 1;
     const Eigen::Index y = columns + 2;
-    MatrixXd total = MatrixXd::Zero(columns + 3, columns + 3);
-    for (const MatrixXd& gram : grams) total += gram;
-
-    std::vector<Eigen::Index> basis;
-    if (elimination_.scale) basis.push_back(m);
-    if (elimination_.ambient) basis.push_back(one);
-    const auto size = static_cast<Eigen::Index>(basis.size());
-    MatrixXd normal(size, size);
-    VectorXd right(size);
-    for (Eigen::Index i = 0; i < size; ++i) {
-        for (Eigen::Index j = 0; j < size; ++j) {
-            normal(i, j) =
-                total(basis[static_cast<std::size_t>(i)], basis[static_cast<std::size_t>(j)]);
-        }
-        right(i) = total(basis[static_cast<std::size_t>(i)], y);
-        if (!elimination_.scale) right(i) -= total(one, m);
+    const auto [a, b] = std::array{linear_[0], linear_[1]};
+    linear_gradient_ = MatrixXd::Zero(static_cast<Eigen::Index>(eliminated_.size()), columns);
+    for (Eigen::Index c = 0; c < linear_gradient_.cols() && !eliminated_.empty(); ++c) {
+        const double with_residual = a * total(c, m) + b * total(c, one) - total(c, y);
+        const Eigen::Vector2d side(-with_residual - a * total(m, c), -a * total(one, c));
+        const VectorXd of_eliminated = side(eliminated_);
+        linear_gradient_.col(c) = linear_inverse_ * of_eliminated;
     }
-    if (size > 0) linear_inverse_ = generalized_inverse(normal);
-    const VectorXd linear = linear_inverse_ * right;
-    linear_gradient_ = MatrixXd::Zero(size, columns);
-    Eigen::Index next = 0;
-    scale_ = elimination_.scale ? linear(next++) : 1.0;
-    ambient_ = elimination_.ambient ? linear(next) : 0.0;
-
-    // transform maps [dm m 1 y] to [J r].
-    MatrixXd transform = MatrixXd::Zero(columns + 3, columns + 1);
-    transform.topLeftCorner(columns, columns).diagonal().setConstant(scale_);
-    transform(m, columns) = scale_;
-    transform(one, columns) = ambient_;
-    transform(y, columns) = -1.0;
-    for (Eigen::Index c = 0; c < columns && size > 0; ++c) {
-        VectorXd side(size);
-        next = 0;
-        if (elimination_.scale) {
-            const double with_residual =
-                scale_ * total(c, m) + ambient_ * total(c, one) - total(c, y);
-            side(next++) = -with_residual - scale_ * total(m, c);
-        }
-        if (elimination_.ambient) side(next) = -scale_ * total(one, c);
-        const VectorXd change = linear_inverse_ * side;
-        linear_gradient_.col(c) = change;
-        next = 0;
-        if (elimination_.scale) transform(m, c) = change(next++);
-        if (elimination_.ambient) transform(one, c) = change(next);
-    }
-    for (MatrixXd& gram : grams) gram = transform.transpose() * gram * transform;
 }
 
 // A Gram matrix of any rank as rows of its factor, by Cholesky's method with the largest pivot
@@ -186,13 +180,12 @@ void FitObjective::compress(const MatrixXd& gram, bool with_gradients, PairRows&
 std::array<double, 2> FitObjective::linear_sigma(double noise_variance,
                                                  const MatrixXd& covariance) const {
     std::array<double, 2> sigma{0.0, 0.0};
-    Eigen::Index next = 0;
-    for (const std::size_t i : {0, 1}) {
-        if (!(i == 0 ? elimination_.scale : elimination_.ambient)) continue;
-        const auto gradient = linear_gradient_.row(next);
-        sigma[i] = std::sqrt(noise_variance * linear_inverse_(next, next) +
-                             gradient.dot(covariance * gradient.transpose()));
-        ++next;
+    for (std::size_t k = 0; k < eliminated_.size(); ++k) {
+        const auto i = static_cast<Eigen::Index>(k);
+        const auto gradient = linear_gradient_.row(i);
+        sigma[static_cast<std::size_t>(eliminated_[k])] =
+            std::sqrt(noise_variance * linear_inverse_(i, i) +
+                      gradient.dot(covariance * gradient.transpose()));
     }
     return sigma;
 }

@@ -40,8 +40,8 @@ class FitObjective {
     int num_columns() const { return num_columns_; }
 
     /// Data per model and per bin, as least squares eliminated them at the last evaluation.
-    double scale() const { return scale_; }
-    double ambient() const { return ambient_; }
+    double scale() const { return linear_[0]; }
+    double ambient() const { return linear_[1]; }
     /// Standard deviations of scale() and ambient(), as far as they were eliminated.
     ///
     /// noise_variance   of each of the data's values
@@ -58,18 +58,19 @@ class FitObjective {
     Eigen::MatrixXd poisson_gram(std::size_t pair, const PairModel& model) const;
     Eigen::MatrixXd linear_gram(std::size_t pair, const PairModel& model) const;
     void eliminate(std::vector<Eigen::MatrixXd>& grams, bool with_gradients);
+    void solve_linear_factors(const Eigen::MatrixXd& total, Eigen::Index columns);
+    void differentiate_linear_factors(const Eigen::MatrixXd& total, Eigen::Index columns);
     void compress(const Eigen::MatrixXd& gram, bool with_gradients, PairRows& rows) const;
 
     ForwardModel& model_;
     const FitData& data_;
     bool is_poisson_;
-    Elimination elimination_;
+    std::vector<Eigen::Index> eliminated_;  ///< 0: scale, 1: ambient
     int num_columns_;
     std::vector<PairRows> rows_;
-    double scale_ = 1.0;
-    double ambient_ = 0.0;
-    Eigen::MatrixXd linear_gradient_;  ///< of what is eliminated, by parameter
-    Eigen::MatrixXd linear_inverse_;   ///< of its normal equations
+    Eigen::Vector2d linear_{1.0, 0.0};  ///< scale and ambient
+    Eigen::MatrixXd linear_gradient_;   ///< of what is eliminated, by parameter
+    Eigen::MatrixXd linear_inverse_;    ///< of its normal equations
 };
 
 }  // namespace calib

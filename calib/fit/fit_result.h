@@ -2,49 +2,16 @@
 #pragma once
 
 #include "calib/model/fit_settings.h"
+#include "calib/model/fitted_values.h"
 #include "calib/statistics/uncertainty.h"
 #include "renderer/core/capture/capture.h"
 #include "renderer/material/scene_geometry.h"
 #include "renderer/scene/scene_file.h"
 
-#include <limits>
 #include <string>
 #include <vector>
 
 namespace calib {
-
-/// One standard deviation of something that was not free, or that the data do not determine.
-inline constexpr double kFixed = 0.0;
-inline constexpr double kUnknown = std::numeric_limits<double>::infinity();
-
-/// Where an object ended up; all values with one standard deviation beside them.
-struct FittedObject {
-    std::string name;
-    core::Vec3 position_m = core::Vec3::Zero();                    ///< node origin, world
-    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< world from node
-    double size = 1.0;                                             ///< relative to the model's
-    double albedo = 1.0;
-    std::vector<double> heights_m;  ///< of free vertices
-    core::Vec3 position_sigma_m = core::Vec3::Zero();
-    core::Vec3 rotation_sigma_deg = core::Vec3::Zero();  ///< about the world's axes
-    double size_sigma = kFixed;
-    double albedo_sigma = kFixed;
-    std::vector<double> heights_sigma_m;
-};
-
-/// A small isotropic scatterer.
-struct FittedPoint {
-    core::Vec3 position_m = core::Vec3::Zero();
-    double albedo = 0.0;  ///< albedo times area [m^2]
-    core::Vec3 position_sigma_m = core::Vec3::Zero();
-    double albedo_sigma = kFixed;
-};
-
-/// A number and its standard deviation.
-struct Estimate {
-    double value = 0.0;
-    double sigma = kFixed;
-};
 
 /// What one start of several led to.
 struct FitStart {
@@ -56,12 +23,7 @@ struct FitStart {
 struct FittedValues {
     std::vector<FittedObject> objects;
     std::vector<FittedPoint> points;
-    Estimate scale{1.0};  ///< data per model radiance; 1 unless free
-    Estimate time_zero_m;
-    Estimate ambient;
-    Estimate response_fwhm_ps;
-    Estimate wall_bow_m;
-    Estimate wall_scale{1.0};
+    Estimates estimates;               ///< of the scene as a whole: "scale" is data per radiance
     renderer::SceneGeometry geometry;  ///< the fitted scene
 };
 

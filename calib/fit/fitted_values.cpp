@@ -1,73 +1,64 @@
 // SPDX-License-Identifier: MIT
 #include "calib/fit/solution.h"
 
-#include <cmath>
-
 namespace calib {
 namespace {
 
-using core::Vec3;
+// Standard deviations of a row's columns; kFixed where it is not free.
+std::vector<double> sigma_of(const SceneModel& model,
+                             const Uncertainty& uncertainty,
+                             const Parameter& row,
+                             std::size_t item) {
+    constexpr std::size_t kMostColumns = 3;  // of a row that is reported although it is fixed
+    const ParameterBlock* block = model.find(row, item);
+    if (block == nullptr) return std::vector<double>(kMostColumns, kFixed);
+    const auto first = uncertainty.sigma.begin() + block->first_column;
+    return {first, first + block->columns};
+}
 
-// Standard deviations by parameter; kFixed for those that were not free.
-class Sigmas {
- public:
-    Sigmas(const SceneModel& model, const Uncertainty& uncertainty)
-        : model_(model), uncertainty_(uncertainty) {}
-
-    double at(ParameterKind kind, std::size_t item = 0, int offset = 0) const {
-        const ParameterBlock* block = model_.find(kind, item);
-        return block == nullptr ? kFixed : uncertainty_.sigma[block->first_column + offset];
-    }
-    Vec3 vector(ParameterKind kind, std::size_t item) const {
-        return {at(kind, item, 0), at(kind, item, 1), at(kind, item, 2)};
-    }
-
- private:
-    const SceneModel& model_;
-    const Uncertainty& uncertainty_;
-};
-
-void store_objects(const FitDriver& driver,
-                   const SceneState& state,
-                   const Sigmas& sigmas,
-                   FittedValues& result) {
-    const SceneModel& model = *driver.model;
-    for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-        const ModelBody& body = model.bodies()[b];
-        const BodyState& s = state.bodies[b];
-        FittedObject& object = result.objects.emplace_back();
-        object.name = body.name;
-        object.position_m = s.position_m;
-        object.rotation = (s.rotation * Eigen::Quaterniond(body.turn)).normalized();
-        if (object.rotation.w() < 0.0) object.rotation.coeffs() *= -1.0;
-        object.size = std::exp(s.log_size);
-        object.albedo = std::exp(s.log_albedo);
-        object.heights_m = s.heights_m;
-        object.position_sigma_m = sigmas.vector(ParameterKind::Translation, b);
-        object.rotation_sigma_deg =
-            core::kDegreesPerRadian * sigmas.vector(ParameterKind::Rotation, b);
-        object.size_sigma = object.size * sigmas.at(ParameterKind::Size, b);
-        object.albedo_sigma = object.albedo * sigmas.at(ParameterKind::Albedo, b);
-        for (std::size_t v = 0; v < s.heights_m.size(); ++v) {
-            object.heights_sigma_m.push_back(
-                sigmas.at(ParameterKind::Heights, b, static_cast<int>(v)));
+FittedObject fitted_object(const FitDriver& driver,
+                           const SceneState& state,
+                           const Uncertainty& uncertainty,
+                           std::size_t b) {
+    const ModelBody& body = driver.model->bodies()[b];
+    FittedObject object;
+    object.name = body.name;
+    for (const Parameter* row : parameters()) {
+        if (row->owner != Owner::Body) continue;
+        const auto sigma = sigma_of(*driver.model, uncertainty, *row, b);
+        if (row->report_body != nullptr) {
+            row->report_body({body, state.bodies[b]}, sigma, object);
+        } else {
+            const double number = row->numbers(state, b)[0];
+            object.numbers.add(row->key, row->estimate(number, sigma[0], driver.settings));
         }
     }
-    for (std::size_t i = 0; i < state.points.size(); ++i) {
-        FittedPoint& point = result.points.emplace_back();
-        point.position_m = state.points[i].position_m;
-        point.albedo = std::exp(state.points[i].log_albedo);
-        point.position_sigma_m = sigmas.vector(ParameterKind::PointPosition, i);
-        point.albedo_sigma = point.albedo * sigmas.at(ParameterKind::PointAlbedo, i);
+    return object;
+}
+
+FittedPoint fitted_point(const FitDriver& driver,
+                         const SceneState& state,
+                         const Uncertainty& uncertainty,
+                         std::size_t index) {
+    FittedPoint point;
+    for (const Parameter* row : parameters()) {
+        if (row->owner != Owner::Point) continue;
+        const auto sigma = sigma_of(*driver.model, uncertainty, *row, index);
+        if (row->effect == Effect::Translates) {
+            point.position_m = state.points[index].position_m;
+            point.position_sigma_m = {sigma[0], sigma[1], sigma[2]};
+        } else {
+            point.albedo = row->estimate(row->numbers(state, index)[0], sigma[0], driver.settings);
+        }
     }
+    return point;
 }
 
 }  // namespace
 
 double ambient_of(const FitDriver::Stage& stage, const SceneState& state) {
-    return state.has_ambient ? std::exp(state.log_ambient)
-                             : stage.objective->ambient() /
-                                   static_cast<double>(stage.model->settings().bins_per_ambient);
+    return added_light(state) + stage.objective->ambient() /
+                                    static_cast<double>(stage.model->settings().bins_per_ambient);
 }
 
 FittedValues fitted_values(const FitDriver& driver,
@@ -75,31 +66,27 @@ FittedValues fitted_values(const FitDriver& driver,
                            const SceneState& state,
                            const Uncertainty& uncertainty,
                            double noise_variance) {
-    const Sigmas sigmas(*driver.model, uncertainty);
-    const auto estimate = [&](double value, ParameterKind kind) {
-        return Estimate{value, sigmas.at(kind)};
-    };
-    // Of a parameter that is a logarithm.
-    const auto positive = [&](double value, ParameterKind kind) {
-        return Estimate{value, value * sigmas.at(kind)};
-    };
     FittedValues result;
-    store_objects(driver, state, sigmas, result);
-    result.scale = positive(std::exp(state.log_scale), ParameterKind::Scale);
-    result.time_zero_m = estimate(state.time_zero_m, ParameterKind::TimeZero);
-    result.ambient = positive(ambient_of(last, state), ParameterKind::Ambient);
+    for (std::size_t b = 0; b < driver.model->bodies().size(); ++b) {
+        result.objects.push_back(fitted_object(driver, state, uncertainty, b));
+    }
+    for (std::size_t i = 0; i < state.points.size(); ++i) {
+        result.points.push_back(fitted_point(driver, state, uncertainty, i));
+    }
     const FitObjective& objective = *last.objective;
     const auto linear_sigma = objective.linear_sigma(noise_variance, uncertainty.covariance);
-    if (driver.elimination.scale) result.scale = {objective.scale(), linear_sigma[0]};
-    if (driver.elimination.ambient) {
-        result.ambient.sigma =
-            linear_sigma[1] / static_cast<double>(last.model->settings().bins_per_ambient);
+    const double bins = last.model->settings().bins_per_ambient;
+    for (const Parameter* row : parameters()) {
+        if (row->owner != Owner::Scene) continue;
+        const double sigma = sigma_of(*driver.model, uncertainty, *row, 0)[0];
+        Estimate estimate = row->estimate(row->numbers(state)[0], sigma, driver.settings);
+        if (driver.elimination.scale && row->effect == Effect::Multiplies) {
+            estimate = {objective.scale(), linear_sigma[0]};
+        } else if (driver.elimination.ambient && row->effect == Effect::AddsLight) {
+            estimate = {ambient_of(last, state), linear_sigma[1] / bins};
+        }
+        result.estimates.add(row->key, estimate);
     }
-    result.response_fwhm_ps =
-        positive(driver.settings.response.jitter_fwhm_ps * std::exp(state.log_width),
-                 ParameterKind::ResponseWidth);
-    result.wall_bow_m = estimate(state.bow_m, ParameterKind::WallBow);
-    result.wall_scale = positive(std::exp(state.log_wall_scale), ParameterKind::WallScale);
     result.geometry = driver.model->posed(state);
     return result;
 }

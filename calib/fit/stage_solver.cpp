@@ -17,8 +17,6 @@ namespace {
 using renderer::Gradients;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kRoughness_m = 1e-3;  // that costs laplacian_weight
-
 // Renders once for all residual blocks, and once for each point: a step is first looked at with its
 // gradients by the line search, then again for its cost and for its Jacobian.
 class SharedRender : public ceres::EvaluationCallback {
@@ -65,7 +63,7 @@ class PairCost : public ceres::CostFunction {
             const auto columns = rows.jacobian.middleCols(block.first_column, block.columns);
             Eigen::Map<RowMajor> target(
                 jacobians[b], columns.rows(), StateVector::ambient_size(block));
-            if (block.kind == ParameterKind::Rotation) {
+            if (block.row->effect == Effect::Rotates) {
                 target = columns * StateVector::turn_by_quaternion(parameters[b]);
             } else {
                 target = columns;
@@ -79,40 +77,6 @@ class PairCost : public ceres::CostFunction {
     const FitObjective& objective_;
     std::size_t pair_;
 };
-
-// Height of every vertex against the mean of its neighbours.
-Eigen::MatrixXd laplacian(const ModelBody& body, double weight) {
-    const auto size = static_cast<Eigen::Index>(body.vertices.size());
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(size, size);
-    const double factor = std::sqrt(weight) / kRoughness_m;
-    for (Eigen::Index v = 0; v < size; ++v) {
-        const auto& neighbours = body.neighbours[static_cast<std::size_t>(v)];
-        if (neighbours.empty()) continue;
-        rows(v, v) = factor;
-        for (const std::uint32_t n : neighbours) {
-            rows(v, n) -= factor / static_cast<double>(neighbours.size());
-        }
-    }
-    return rows;
-}
-
-// Of a block's parameters p: rows p / sigma is normal.
-struct LinearPrior {
-    Eigen::MatrixXd rows;
-    double sigma = 1.0;
-};
-
-std::optional<LinearPrior> prior_of(const SceneModel& model,
-                                    const ParameterBlock& block,
-                                    const SolveSettings& settings) {
-    if (block.kind == ParameterKind::TimeZero && settings.time_zero_sigma_m) {
-        return LinearPrior{Eigen::MatrixXd::Identity(1, 1), *settings.time_zero_sigma_m};
-    }
-    if (block.kind == ParameterKind::Heights && settings.laplacian_weight > 0.0) {
-        return LinearPrior{laplacian(model.bodies()[block.item], settings.laplacian_weight)};
-    }
-    return std::nullopt;
-}
 
 class PriorCost : public ceres::CostFunction {
  public:
@@ -171,11 +135,11 @@ void add_priors(const SceneModel& model,
     for (std::size_t b = 0; b < model.blocks().size(); ++b) {
         const ParameterBlock& block = model.blocks()[b];
         double* parameters = values.blocks()[b];
-        if (block.kind == ParameterKind::Rotation) {
+        if (block.row->effect == Effect::Rotates) {
             problem.SetManifold(parameters, new ceres::QuaternionManifold);
-        } else if (block.kind == ParameterKind::Ambient) {
+        } else if (block.row->effect == Effect::AddsLight) {
             problem.SetParameterLowerBound(parameters, 0, settings.lowest_log_ambient);
-        } else if (auto prior = prior_of(model, block, settings)) {
+        } else if (auto prior = model.prior_of(block, settings.prior)) {
             problem.AddResidualBlock(new PriorCost(std::move(*prior)), nullptr, parameters);
         }
     }
@@ -228,7 +192,7 @@ SolveSummary solve_stage(const SceneModel& model,
 Eigen::MatrixXd prior_information(const SceneModel& model, const SolveSettings& settings) {
     Eigen::MatrixXd information = Eigen::MatrixXd::Zero(model.num_columns(), model.num_columns());
     for (const ParameterBlock& block : model.blocks()) {
-        if (const auto prior = prior_of(model, block, settings)) {
+        if (const auto prior = model.prior_of(block, settings.prior)) {
             information.block(
                 block.first_column, block.first_column, block.columns, block.columns) +=
                 prior->rows.transpose() * prior->rows / (prior->sigma * prior->sigma);

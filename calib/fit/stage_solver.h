@@ -23,8 +23,7 @@ struct SolveSummary {
 struct SolveSettings {
     LossKind loss = LossKind::None;
     double loss_scale = 1.5;
-    double laplacian_weight = 0.0;
-    std::optional<double> time_zero_sigma_m;
+    PriorSettings prior;
     double lowest_log_ambient = -40.0;
     int max_iterations = 60;
     std::function<bool()> stop_requested;

@@ -15,12 +15,6 @@ namespace {
 using core::Vec3;
 using renderer::Gradients;
 
-/// How a parameter changes the knots.
-struct ColumnChange {
-    std::size_t column;
-    KnotChange change;
-};
-
 enum class LegPair { Retroreflected, Confocal, Apart };
 
 // Paths by way of an element's nodes.
@@ -34,13 +28,13 @@ bool find_paths(const PathEndpoints& ends,
     for (std::size_t i = 0; i < 6; ++i) {
         const Leg sensor = make_leg(*ends.sensor, nodes[i], normal, gradients);
         if (legs == LegPair::Retroreflected) {
-            paths[i] = retroreflected(ends, sensor, gradients);
+            paths[i] = retroreflected(sensor, gradients);
         } else if (legs == LegPair::Confocal) {
-            paths[i] = join_legs(ends, sensor, sensor, gradients);
+            paths[i] = join_legs(sensor, sensor, gradients);
         } else {
             const Leg light = make_leg(*ends.light, nodes[i], normal, gradients);
             if (light.side != sensor.side) return false;
-            paths[i] = join_legs(ends, light, sensor, gradients);
+            paths[i] = join_legs(light, sensor, gradients);
         }
     }
     return true;
@@ -53,19 +47,17 @@ void add_means(const renderer::TriangleBins& bins, PairModel& result) {
     }
 }
 
-// Time zero and the response's width change every element alike.
+}  // namespace
+
+// What shifts time and widens the response changes every element alike.
 //
-// albedo_column   of the surface's or point's albedo; -1: fixed
-void add_gradients(const SceneModel& model,
-                   const renderer::TriangleBins& bins,
-                   const std::vector<ColumnChange>& changes,
-                   int albedo_column,
-                   double width_share,
-                   PairModel& result) {
-    const auto* time_zero = model.find(ParameterKind::TimeZero);
-    const auto* width = model.find(ParameterKind::ResponseWidth);
+// factors   columns of what multiplies this element or point alone
+void ForwardModel::add_gradients(const renderer::TriangleBins& bins,
+                                 const std::vector<ColumnChange>& changes,
+                                 const std::vector<int>& factors,
+                                 PairModel& result) const {
     const auto first = static_cast<std::size_t>(bins.first_bin);
-    const auto columns = static_cast<std::size_t>(model.num_columns());
+    const auto columns = static_cast<std::size_t>(model_.num_columns());
     for (std::size_t b = 0; b < bins.bins.size(); ++b) {
         const auto& s = bins.bins[b].slots;
         double* row = result.gradients.data() + (first + b) * columns;
@@ -74,23 +66,11 @@ void add_gradients(const SceneModel& model,
                            s[4] * change.weight[0] + s[5] * change.weight[1] +
                            s[6] * change.weight[2];
         }
-        if (albedo_column >= 0) row[albedo_column] += s[0];
-        if (time_zero != nullptr) row[time_zero->first_column] += s[1] + s[2] + s[3];
-        if (width != nullptr) row[width->first_column] += width_share * s[7];
+        for (const int column : factors) row[column] += s[0];
+        for (const int column : columns_.time_shifts) row[column] += s[1] + s[2] + s[3];
+        for (const int column : columns_.widths) row[column] += width_share_ * s[7];
     }
 }
-
-// Calls add(column, which) for what is free of the wall: which is 0 for its bow, 1 for its scale.
-template <class Add>
-void for_each_wall_parameter(const SceneModel& model, const Add& add) {
-    for (const std::size_t which : {0UL, 1UL}) {
-        const auto* block =
-            model.find(which == 0 ? ParameterKind::WallBow : ParameterKind::WallScale);
-        if (block != nullptr) add(block->first_column, which);
-    }
-}
-
-}  // namespace
 
 void ForwardModel::add_element(const PosedElement& element,
                                renderer::VisibilityMask mask,
@@ -104,8 +84,7 @@ void ForwardModel::add_element(const PosedElement& element,
                                                     : LegPair::Apart;
     std::array<Path, 6> paths;
     if (!find_paths(ends, element.nodes, element.normal, legs, gradients_, paths)) return;
-    const KnotFit fit =
-        fit_knots(paths, state_.time_zero_m + settings_.offset_m[pair], element.weight);
+    const KnotFit fit = fit_knots(paths, time_shift_m_ + settings_.offset_m[pair], element.weight);
     const VisibleWeights visible(fit.knots().weight, mask);
     thread_local renderer::TriangleBins bins;
     renderer::evaluate_triangle(
@@ -122,7 +101,7 @@ void ForwardModel::add_element(const PosedElement& element,
             opl[i] = opl_gradient(i);
             weight[i] = element.weight * factor_gradient(i);
         }
-        changes.push_back({static_cast<std::size_t>(column), fit.change(opl, weight)});
+        changes.push_back({column, fit.change(opl, weight)});
         visible.convert_change(changes.back().change.weight);
     };
     for (std::size_t c = 0; c < element.columns.size(); ++c) {
@@ -137,13 +116,15 @@ void ForwardModel::add_element(const PosedElement& element,
                        paths[i].factor * element.log_area_gradients[c];
             });
     }
-    for_each_wall_parameter(model_, [&](int column, std::size_t which) {
+    for (const auto& [column, index] : columns_.wall) {
+        std::array<PathChange, 6> by_wall;
+        for (std::size_t i = 0; i < 6; ++i) by_wall[i] = paths[i].by_wall(ends, index);
         add_change(
             column,
-            [&](std::size_t i) { return paths[i].opl_by_wall[which]; },
-            [&](std::size_t i) { return paths[i].factor_by_wall[which]; });
-    });
-    add_gradients(model_, bins, changes, element.albedo_column, width_share_, result);
+            [&](std::size_t i) { return by_wall[i].opl; },
+            [&](std::size_t i) { return by_wall[i].factor; });
+    }
+    add_gradients(bins, changes, *element.factor_columns, result);
 }
 
 void ForwardModel::add_point(std::size_t index, std::size_t pair, PairModel& result) const {
@@ -152,10 +133,9 @@ void ForwardModel::add_point(std::size_t index, std::size_t pair, PairModel& res
     Leg light = make_point_leg(*ends.light, point.position_m);
     Leg sensor = make_point_leg(*ends.sensor, point.position_m);
     light.by_normal = sensor.by_normal = Vec3::Zero();
-    const Path path = join_legs(ends, light, sensor, Gradients::With);
-    const double constant =
-        std::exp(point.log_albedo + state_.log_scale) * settings_.radiance_factor;
-    const double opl = path.opl + state_.time_zero_m + settings_.offset_m[pair];
+    const Path path = join_legs(light, sensor, Gradients::With);
+    const double constant = point_factors_[index] * settings_.radiance_factor;
+    const double opl = path.opl + time_shift_m_ + settings_.offset_m[pair];
 
     // A triangle with equal knots is a point; without a response the kernel has no gradient there,
     // so that light is spread evenly over a bin.
@@ -174,18 +154,17 @@ void ForwardModel::add_point(std::size_t index, std::size_t pair, PairModel& res
     std::vector<ColumnChange> changes;
     const auto add_change = [&](int column, double by_opl, double by_factor) {
         const double by_weight = constant * by_factor;
-        changes.push_back({static_cast<std::size_t>(column),
-                           {{by_opl, by_opl, by_opl}, {by_weight, by_weight, by_weight}}});
+        changes.push_back({column, {{by_opl, by_opl, by_opl}, {by_weight, by_weight, by_weight}}});
     };
-    const int position = model_.find(ParameterKind::PointPosition, index)->first_column;
+    const PointColumns& own = columns_.points[index];
     for (int a = 0; a < 3; ++a) {
-        add_change(position + a, path.opl_by_position[a], path.factor_by_position[a]);
+        add_change(own.position + a, path.opl_by_position[a], path.factor_by_position[a]);
     }
-    for_each_wall_parameter(model_, [&](int column, std::size_t which) {
-        add_change(column, path.opl_by_wall[which], path.factor_by_wall[which]);
-    });
-    const int albedo = model_.find(ParameterKind::PointAlbedo, index)->first_column;
-    add_gradients(model_, bins, changes, albedo, width_share_, result);
+    for (const auto& [column, wall] : columns_.wall) {
+        const PathChange change = path.by_wall(ends, wall);
+        add_change(column, change.opl, change.factor);
+    }
+    add_gradients(bins, changes, own.factors, result);
 }
 
 }  // namespace calib

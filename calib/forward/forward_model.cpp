@@ -16,13 +16,57 @@ using renderer::Gradients;
 // A measured response is applied to bins this much finer than the data's.
 constexpr int kOversampling = 3;
 
+std::vector<int> columns_of(const SceneModel& model, Owner owner, std::size_t item, Effect effect) {
+    std::vector<int> columns;
+    for (const ParameterBlock* block : model.find(owner, item, effect)) {
+        columns.push_back(block->first_column);
+    }
+    return columns;
+}
+
+// Of each one's light: that of its own, and what scales all of it.
+template <class Item>
+std::vector<double> factors_of(const SceneState& state,
+                               Owner owner,
+                               const std::vector<Item>& items) {
+    const double log_scale = sum_of(state, Owner::Scene, 0, Effect::Multiplies);
+    std::vector<double> factors;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        factors.push_back(std::exp(sum_of(state, owner, i, Effect::Multiplies) + log_scale));
+    }
+    return factors;
+}
+
 }  // namespace
+
+ForwardModel::Columns::Columns(const SceneModel& model)
+    : time_shifts(columns_of(model, Owner::Scene, 0, Effect::ShiftsTime)),
+      widths(columns_of(model, Owner::Scene, 0, Effect::WidensResponse)),
+      scales(columns_of(model, Owner::Scene, 0, Effect::Multiplies)) {
+    std::size_t index = 0;
+    for (const Parameter* row : parameters()) {
+        if (row->effect != Effect::MovesWall) continue;
+        if (const auto* block = model.find(*row)) wall.emplace_back(block->first_column, index);
+        ++index;
+    }
+    for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+        bodies.push_back(columns_of(model, Owner::Body, b, Effect::Multiplies));
+    }
+    for (std::size_t i = 0; i < model.num_points(); ++i) {
+        points.push_back({columns_of(model, Owner::Point, i, Effect::Translates).front(),
+                          columns_of(model, Owner::Point, i, Effect::Multiplies)});
+    }
+}
 
 ForwardModel::ForwardModel(const SceneModel& model,
                            core::WallScan scan,
                            const WallMotion& wall,
                            ForwardSettings settings)
-    : model_(model), scan_(std::move(scan)), settings_(std::move(settings)), wall_(wall) {
+    : model_(model),
+      columns_(model),
+      scan_(std::move(scan)),
+      settings_(std::move(settings)),
+      wall_(wall) {
     wall_points_ = scan_.sensing;
     wall_points_.grid.reset();
     if (scan_.pattern != core::ScanPattern::Confocal) {
@@ -71,7 +115,11 @@ void ForwardModel::refresh(const SceneState& state) {
 void ForwardModel::update(const SceneState& state, Gradients gradients) {
     state_ = state;
     gradients_ = gradients;
-    const double width = std::exp(state.log_width);
+    time_shift_m_ = sum_of(state, Owner::Scene, 0, Effect::ShiftsTime);
+    ambient_ = added_light(state) * settings_.bins_per_ambient;
+    body_factors_ = factors_of(state, Owner::Body, state.bodies);
+    point_factors_ = factors_of(state, Owner::Point, state.points);
+    const double width = std::exp(sum_of(state, Owner::Scene, 0, Effect::WidensResponse));
     const double response2 =
         settings_.response_share * settings_.sigma_m * settings_.sigma_m * width * width;
     const double blur2 = (1.0 - settings_.response_share) * settings_.sigma_m * settings_.sigma_m;
@@ -100,8 +148,7 @@ ForwardModel::PosedElement ForwardModel::pose(const ModelElement& element,
     posed.normal = across / norm;
     posed.is_retroreflective = facet.is_retroreflective;
     posed.weight = 0.5 * norm * element.area_share * facet.albedo_ratio *
-                   std::exp(state_.bodies[facet.body].log_albedo + state_.log_scale) *
-                   settings_.radiance_factor;
+                   body_factors_[facet.body] * settings_.radiance_factor;
     if (posed.is_retroreflective) posed.weight *= core::kPi / settings_.spot_m2;
     const auto interpolate = [&](const std::array<Vec3, 3>& corners, std::array<Vec3, 6>& nodes) {
         for (std::size_t i = 0; i < 3; ++i) {
@@ -113,9 +160,7 @@ ForwardModel::PosedElement ForwardModel::pose(const ModelElement& element,
     interpolate(motion.corners, posed.nodes);
     if (gradients_ == Gradients::Without) return posed;
 
-    if (const auto* albedo = model_.find(ParameterKind::Albedo, facet.body)) {
-        posed.albedo_column = albedo->first_column;
-    }
+    posed.factor_columns = &columns_.bodies[facet.body];
     posed.columns = motion.columns;
     for (const auto& corners : motion.by_column) {
         interpolate(corners, posed.node_gradients.emplace_back());
@@ -191,21 +236,18 @@ void ForwardModel::add_response(const PairModel& fine, PairModel& result) const 
 void ForwardModel::finish(PairModel& fine, PairModel& result) const {
     const auto columns = static_cast<std::size_t>(model_.num_columns());
     const bool with_gradients = gradients_ == Gradients::With;
-    if (const auto* scale = model_.find(ParameterKind::Scale); scale && with_gradients) {
-        for (std::size_t b = 0; b < fine.mean.size(); ++b) {
-            fine.gradients[b * columns + static_cast<std::size_t>(scale->first_column)] =
-                fine.mean[b];
+    for (std::size_t b = 0; b < fine.mean.size() && with_gradients; ++b) {
+        for (const int column : columns_.scales) {
+            fine.gradients[b * columns + static_cast<std::size_t>(column)] = fine.mean[b];
         }
     }
-    const auto bins = static_cast<std::size_t>(settings_.axis.num_bins);
     if (settings_.measured) add_response(fine, result);
-    if (!state_.has_ambient) return;
-    const double ambient = std::exp(state_.log_ambient) * settings_.bins_per_ambient;
-    const auto* block = model_.find(ParameterKind::Ambient);
-    for (std::size_t b = 0; b < bins; ++b) {
-        result.mean[b] += ambient;
-        if (with_gradients && block != nullptr) {
-            result.gradients[b * columns + static_cast<std::size_t>(block->first_column)] = ambient;
+    for (double& value : result.mean) value += ambient_;
+    if (!with_gradients) return;
+    for (const ParameterBlock* block : model_.find(Owner::Scene, 0, Effect::AddsLight)) {
+        const double light = std::exp(block->row->numbers(state_)[0]) * settings_.bins_per_ambient;
+        for (std::size_t b = 0; b < result.mean.size(); ++b) {
+            result.gradients[b * columns + static_cast<std::size_t>(block->first_column)] = light;
         }
     }
 }

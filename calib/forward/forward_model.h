@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "calib/forward/knot_changes.h"
 #include "calib/forward/model_elements.h"
-#include "calib/forward/wall_motion.h"
 #include "calib/model/scene_model.h"
 #include "renderer/core/capture/capture.h"
 #include "renderer/geometry/visibility_mask.h"
@@ -79,11 +79,32 @@ class ForwardModel {
         core::Vec3 normal;
         double weight = 0.0;  ///< area and albedo and all constants
         bool is_retroreflective = false;
-        int albedo_column = -1;
+        const std::vector<int>* factor_columns = nullptr;
         std::vector<int> columns;
         std::vector<std::array<core::Vec3, 6>> node_gradients;  ///< per column
         std::vector<core::Vec3> normal_gradients;
         std::vector<double> log_area_gradients;
+    };
+
+    struct PointColumns {
+        int position = 0;  ///< the first of three
+        std::vector<int> factors;
+    };
+    /// Columns of the free parameters, by what they change beside the facets.
+    struct Columns {
+        explicit Columns(const SceneModel& model);
+
+        std::vector<std::pair<int, std::size_t>> wall;  ///< and where a point's gradients stand
+        std::vector<int> time_shifts;
+        std::vector<int> widths;
+        std::vector<int> scales;
+        std::vector<std::vector<int>> bodies;  ///< factors of each one's light
+        std::vector<PointColumns> points;
+    };
+    /// How a parameter changes the knots of an element.
+    struct ColumnChange {
+        int column;
+        KnotChange change;
     };
 
     PosedElement pose(const ModelElement& element, const FacetMotion& motion) const;
@@ -92,6 +113,10 @@ class ForwardModel {
                      std::size_t pair,
                      PairModel& result) const;
     void add_point(std::size_t point, std::size_t pair, PairModel& result) const;
+    void add_gradients(const renderer::TriangleBins& bins,
+                       const std::vector<ColumnChange>& changes,
+                       const std::vector<int>& factors,
+                       PairModel& result) const;
     void add_response(const PairModel& fine, PairModel& result) const;
     void finish(PairModel& fine, PairModel& result) const;
     core::TimeAxis fine_axis() const;
@@ -108,12 +133,17 @@ class ForwardModel {
                                           std::size_t pair) const;
 
     const SceneModel& model_;
+    Columns columns_;
     core::WallScan scan_;
     ForwardSettings settings_;
     WallMotion wall_;
     SceneState state_;
     renderer::Gradients gradients_ = renderer::Gradients::Without;
-    double sigma_m_ = 0.0;  ///< at the present width
+    double time_shift_m_ = 0.0;
+    double ambient_ = 0.0;               ///< per bin
+    std::vector<double> body_factors_;   ///< of each one's light
+    std::vector<double> point_factors_;  ///< likewise
+    double sigma_m_ = 0.0;               ///< at the present width
     double width_share_ = 1.0;
     std::vector<ModelElement> elements_;
     std::vector<PosedElement> posed_;

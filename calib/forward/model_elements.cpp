@@ -15,7 +15,7 @@ constexpr double kErrorPerKappa = 0.05;
 // Weights are linear over an element only while it is small against its distance: squared edge over
 // squared distance per tolerance.
 constexpr double kSquaredAspectPerTolerance = 6.0;
-constexpr std::size_t kMaxPieces = 200'000;
+constexpr std::size_t kMaxElements = 200'000;
 constexpr int kMaxBisections = 24;
 
 struct SplitElement {
@@ -62,7 +62,7 @@ void append_elements(const std::array<Vec3, 3>& corners,
             squared[longest] <= kSquaredAspectPerTolerance * tolerance * distance * distance;
         if (is_small || candidate.depth == kMaxBisections) {
             elements.push_back(candidate.element);
-            if (elements.size() > kMaxPieces) {
+            if (elements.size() > kMaxElements) {
                 throw core::Failure("surface elements",
                                     "the model needs more than 200,000 elements");
             }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "calib/forward/wall_motion.h"
+#include "calib/model/wall_motion.h"
 #include "renderer/triangle/triangle_histogram.h"
 
-#include <array>
 #include <cmath>
 
 namespace calib {
@@ -66,57 +65,60 @@ inline Leg make_point_leg(const MovedWallPoint& wall, const core::Vec3& x) {
     return leg;
 }
 
-/// Both legs of a path by way of one surface point.
-struct Path {
-    double opl = 0.0;
-    double factor = 0.0;
-    core::Vec3 opl_by_position;
-    core::Vec3 factor_by_position;
-    core::Vec3 factor_by_normal;
-    std::array<double, 2> opl_by_wall{};  // bow, log scale
-    std::array<double, 2> factor_by_wall{};
-};
-
 /// The wall points of a pair.
 struct PathEndpoints {
     const MovedWallPoint* light;
     const MovedWallPoint* sensor;
 };
 
+/// How a path's length and factor change with one parameter.
+struct PathChange {
+    double opl = 0.0;
+    double factor = 0.0;
+};
+
+/// Both legs of a path by way of one surface point.
+struct Path {
+    double opl = 0.0;
+    double factor = 0.0;
+    Leg light;
+    Leg sensor;
+    core::Vec3 opl_by_position;
+    core::Vec3 factor_by_position;
+    core::Vec3 factor_by_normal;
+
+    /// By the parameter of the wall whose gradients stand at `index`.
+    PathChange by_wall(const PathEndpoints& ends, std::size_t index) const {
+        const WallGradient& of_light = ends.light->gradients[index];
+        const WallGradient& of_sensor = ends.sensor->gradients[index];
+        return {-light.direction.dot(of_light.position) - sensor.direction.dot(of_sensor.position),
+                sensor.factor * (light.by_wall_normal.dot(of_light.normal) -
+                                 light.by_position.dot(of_light.position)) +
+                    light.factor * (sensor.by_wall_normal.dot(of_sensor.normal) -
+                                    sensor.by_position.dot(of_sensor.position))};
+    }
+};
+
 /// The path of two legs: the sum of their lengths, the product of their factors.
-inline Path join_legs(const PathEndpoints& ends,
-                      const Leg& light,
-                      const Leg& sensor,
-                      renderer::Gradients gradients) {
+inline Path join_legs(const Leg& light, const Leg& sensor, renderer::Gradients gradients) {
     Path path;
     path.opl = light.length + sensor.length;
     path.factor = light.factor * sensor.factor;
     if (gradients == renderer::Gradients::Without) return path;
+    path.light = light;
+    path.sensor = sensor;
     path.opl_by_position = light.direction + sensor.direction;
     path.factor_by_position = sensor.factor * light.by_position + light.factor * sensor.by_position;
     path.factor_by_normal = sensor.factor * light.by_normal + light.factor * sensor.by_normal;
-    for (std::size_t i = 0; i < 2; ++i) {
-        const auto& light_gradient = ends.light->position_gradient[i];
-        const auto& sensor_gradient = ends.sensor->position_gradient[i];
-        path.opl_by_wall[i] =
-            -light.direction.dot(light_gradient) - sensor.direction.dot(sensor_gradient);
-        path.factor_by_wall[i] =
-            sensor.factor * (light.by_wall_normal.dot(ends.light->normal_gradient[i]) -
-                             light.by_position.dot(light_gradient)) +
-            light.factor * (sensor.by_wall_normal.dot(ends.sensor->normal_gradient[i]) -
-                            sensor.by_position.dot(sensor_gradient));
-    }
     return path;
 }
 
 /// A retroreflector sends back one leg's factor.
-inline Path retroreflected(const PathEndpoints& ends,
-                           const Leg& leg,
-                           renderer::Gradients gradients) {
+inline Path retroreflected(const Leg& leg, renderer::Gradients gradients) {
     Leg mirror = leg;
     mirror.factor = 1.0;
     mirror.by_position = mirror.by_normal = mirror.by_wall_normal = core::Vec3::Zero();
-    return join_legs(ends, leg, mirror, gradients);
+    return join_legs(leg, mirror, gradients);
 }
 
 }  // namespace calib

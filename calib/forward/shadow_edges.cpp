@@ -47,12 +47,8 @@ std::vector<double> ForwardModel::vertex_speeds(const SceneState& state) const {
             for (const Vec3& gradient : motion.by_column[c]) add(motion.columns[c], gradient);
         }
     }
-    for (const std::size_t w : {0UL, 1UL}) {
-        const auto* block = model_.find(w == 0 ? ParameterKind::WallBow : ParameterKind::WallScale);
-        if (block == nullptr) continue;
-        for (const MovedWallPoint& p : wall_.moved(scan_.sensing, state)) {
-            add(block->first_column, p.position_gradient[w]);
-        }
+    for (const MovedWallPoint& p : wall_.moved(scan_.sensing, state)) {
+        for (const auto& [column, index] : columns_.wall) add(column, p.gradients[index].position);
     }
     return speeds;
 }

@@ -1,101 +1,130 @@
 // SPDX-License-Identifier: MIT
 #include "calib/model/fit_settings.h"
 
+#include "calib/model/parameter.h"
 #include "renderer/core/settings_json.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 #include <filesystem>
 
 namespace calib {
 namespace {
 
-template <class Settings>
-struct Flag {
-    const char* name;
-    bool Settings::*member;
-};
+// "wall.bow" stands as bow in the list wall.
+std::string key_of(const Parameter& row) {
+    const std::string name = row.name;
+    return name.substr(0, name.find('.'));
+}
 
-// What may be free of an object. `pose` stands for two others and is never written.
-constexpr std::array<Flag<FreeObject>, 7> kObjectFlags{{{"pose", &FreeObject::translation},
-                                                        {"pose", &FreeObject::rotation},
-                                                        {"translation", &FreeObject::translation},
-                                                        {"rotation", &FreeObject::rotation},
-                                                        {"size", &FreeObject::size},
-                                                        {"albedo", &FreeObject::albedo},
-                                                        {"vertices", &FreeObject::vertices}}};
-constexpr const char* kObjectChoices =
-    "a list of pose, translation, rotation, size, albedo, vertices";
+bool is_listed(const Parameter& row) {
+    return key_of(row) != row.name;
+}
 
-constexpr std::array<Flag<FreeSettings>, 2> kWallFlags{
-    {{"bow", &FreeSettings::wall_bow}, {"scale", &FreeSettings::wall_scale}}};
+std::vector<std::string> names_in_list(const std::string& list) {
+    std::vector<std::string> names;
+    for (const Parameter* row : parameters()) {
+        if (is_listed(*row) && key_of(*row) == list) names.push_back(row->name + list.size() + 1);
+    }
+    return names;
+}
 
-// Sets the flags that a list names.
-//
-// list_choices, item_choices   what a list and its items must be, for the errors
-template <class Settings, std::size_t N>
-void read_flags(const core::Json& json,
+void require_known(const core::Json& name,
+                   const std::string& where,
+                   const std::vector<std::string>& known) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) return;
+    core::throw_wrong_type(where, name, fmt::format("a list of {}", fmt::join(known, ", ")));
+}
+
+// Adds the names that a list holds, with a prefix.
+void read_names(const core::Json& json,
                 const std::string& where,
-                const std::array<Flag<Settings>, N>& flags,
-                const char* list_choices,
-                const char* item_choices,
-                Settings& settings) {
-    if (!json.is_array()) core::throw_wrong_type(where, json, list_choices);
+                const std::vector<std::string>& known,
+                const std::string& prefix,
+                std::set<std::string>& names) {
+    if (!json.is_array()) require_known(json, where, known);
     for (const core::Json& item : json) {
-        bool is_known = false;
-        for (const Flag<Settings>& flag : flags) {
-            if (item != flag.name) continue;
-            settings.*flag.member = is_known = true;
-        }
-        if (!is_known) core::throw_wrong_type(where, item, item_choices);
+        require_known(item, where, known);
+        names.insert(prefix + item.get<std::string>());
     }
 }
 
-template <class Settings, std::size_t N>
-core::Json write_flags(const Settings& settings, const std::array<Flag<Settings>, N>& flags) {
-    core::Json json = core::Json::array();
-    for (const Flag<Settings>& flag : flags) {
-        if (settings.*flag.member && flag.name != std::string_view("pose")) {
-            json.push_back(flag.name);
+// False, true or the parameter's prior.
+void read_flag(const Parameter& row,
+               const core::Json& json,
+               const std::string& where,
+               FreeSettings& free) {
+    bool is_free = true;
+    if (row.prior == nullptr || json.is_boolean()) {
+        core::read_value(json, where, is_free);
+    } else if (json.is_object()) {
+        core::check_keys(json, where, {row.prior});
+        if (json.contains(row.prior)) {
+            core::read_value(
+                json[row.prior], core::join_key(where, row.prior), free.prior_sigma[row.name]);
         }
+    } else {
+        core::throw_wrong_type(where, json, fmt::format("false, true or {{ {} }}", row.prior));
     }
-    return json;
+    if (is_free) {
+        free.parameters.insert(row.name);
+    } else {
+        free.parameters.erase(row.name);
+    }
 }
 
-void read_time_zero(const core::Json& json, const std::string& where, FreeSettings& free) {
-    if (json.is_boolean()) {
-        free.time_zero = json.get<bool>();
-        return;
+FreeObject& object_of_name(const std::string& name, FreeSettings& free) {
+    for (FreeObject& object : free.objects) {
+        if (object.name == name) return object;
     }
-    if (!json.is_object()) core::throw_wrong_type(where, json, "false, true or { prior_sigma_m }");
-    core::check_keys(json, where, {"prior_sigma_m"});
-    free.time_zero = true;
-    if (json.contains("prior_sigma_m")) {
-        core::read_value(json["prior_sigma_m"], where + ".prior_sigma_m", free.time_zero_sigma_m);
-    }
+    return free.objects.emplace_back(FreeObject{name, {}});
 }
 
 }  // namespace
+
+bool FreeObject::frees(const Parameter& row) const {
+    return row.owner == Owner::Body && (parameters.contains(row.name) ||
+                                        (row.group != nullptr && parameters.contains(row.group)));
+}
+
+std::vector<std::string> free_names(Owner owner) {
+    std::vector<std::string> names;
+    const auto add = [&](const std::string& name) {
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    };
+    for (const Parameter* row : parameters()) {
+        if (row->owner != owner || !row->is_setting) continue;
+        if (row->group != nullptr) add(row->group);
+        add(key_of(*row));
+    }
+    return names;
+}
+
+const char* free_help() {
+    static const std::string kHelp = fmt::format("node name -> any of {}; point_scatterers, {}",
+                                                 fmt::join(free_names(Owner::Body), "|"),
+                                                 fmt::join(free_names(Owner::Scene), ", "));
+    return kHelp.c_str();
+}
 
 void read_value(const core::Json& json, const std::string& where, FreeSettings& free) {
     if (!json.is_object()) core::throw_wrong_type(where, json, "an object with named fields");
     for (const auto& [key, value] : json.items()) {
         const std::string place = core::join_key(where, key);
+        const auto row =
+            std::find_if(parameters().begin(), parameters().end(), [&](const Parameter* p) {
+                return p->owner == Owner::Scene && p->is_setting && key_of(*p) == key;
+            });
         if (key == "point_scatterers") {
             core::read_value(value, place, free.point_scatterers);
-        } else if (key == "time_zero") {
-            read_time_zero(value, place, free);
-        } else if (key == "ambient") {
-            core::read_value(value, place, free.ambient);
-        } else if (key == "response_fwhm") {
-            core::read_value(value, place, free.response_fwhm);
-        } else if (key == "wall") {
-            read_flags(value, place, kWallFlags, "a list of bow, scale", "bow or scale", free);
+        } else if (row == parameters().end()) {
+            std::set<std::string>& names = object_of_name(key, free).parameters;
+            read_names(value, place, free_names(Owner::Body), "", names);
+        } else if (is_listed(**row)) {
+            read_names(value, place, names_in_list(key), key + ".", free.parameters);
         } else {
-            FreeObject& object = free.objects.emplace_back();
-            object.name = key;
-            read_flags(value, place, kObjectFlags, kObjectChoices, kObjectChoices, object);
+            read_flag(**row, value, place, free);
         }
     }
 }
@@ -103,14 +132,25 @@ void read_value(const core::Json& json, const std::string& where, FreeSettings& 
 core::Json write_value(const FreeSettings& free) {
     core::Json json = core::Json::object();
     for (const FreeObject& object : free.objects) {
-        json[object.name] = write_flags(object, kObjectFlags);
+        core::Json& names = json[object.name] = core::Json::array();
+        for (const Parameter* row : parameters()) {
+            if (object.frees(*row)) names.push_back(row->name);
+        }
     }
     json["point_scatterers"] = free.point_scatterers;
-    json["time_zero"] = free.time_zero;
-    if (free.time_zero_sigma_m) json["time_zero"] = {{"prior_sigma_m", *free.time_zero_sigma_m}};
-    json["ambient"] = free.ambient;
-    json["response_fwhm"] = free.response_fwhm;
-    json["wall"] = write_flags(free, kWallFlags);
+    for (const Parameter* row : parameters()) {
+        if (row->owner != Owner::Scene || !row->is_setting) continue;
+        const bool is_free = free.parameters.contains(row->name);
+        core::Json& target = json[key_of(*row)];
+        const auto prior = free.prior_sigma.find(row->name);
+        if (!is_listed(*row)) {
+            target = is_free;
+            if (prior != free.prior_sigma.end()) target = {{row->prior, prior->second}};
+        } else {
+            if (target.is_null()) target = core::Json::array();
+            if (is_free) target.push_back(row->name + key_of(*row).size() + 1);
+        }
+    }
     return json;
 }
 
@@ -124,36 +164,34 @@ void read_value(const core::Json& json, const std::string& where, LossKind& loss
 }
 
 void validate(const FitSettings& s, const std::string& where) {
-    const auto require = [&](bool holds, const char* key, const auto& found, const char* allowed) {
-        if (!holds) throw core::Error(where + key, fmt::format("found {}", found), allowed);
-    };
-    const auto positive = [&](double value, const char* key) {
-        require(std::isfinite(value) && value > 0.0, key, value, "must be positive");
-    };
-    require(s.free.point_scatterers >= 0 && s.free.point_scatterers <= 1000,
-            "free.point_scatterers",
-            s.free.point_scatterers,
-            "must be from 0 to 1000");
-    if (s.free.time_zero_sigma_m) {
-        positive(*s.free.time_zero_sigma_m, "free.time_zero.prior_sigma_m");
+    core::check_ranges(s, where);
+    const auto key = [&](const std::string& name) { return core::join_key(where, name); };
+    core::check_range(s.free.point_scatterers, {0, true, 1000, true}, key("free.point_scatterers"));
+    std::vector<std::string> of_scene;
+    for (const Parameter* row : parameters()) {
+        if (row->owner == Owner::Scene) of_scene.push_back(row->name);
+        const auto sigma = s.free.prior_sigma.find(row->name);
+        if (sigma == s.free.prior_sigma.end()) continue;
+        core::check_range(
+            sigma->second, {.low = 0}, key(fmt::format("free.{}.{}", row->name, row->prior)));
     }
-    require(!s.blur_schedule_m.empty() && s.blur_schedule_m.back() == 0.0,
-            "blur_schedule_m",
-            "no 0 at its end",
-            "must end in 0, since blurred counts are not Poisson");
+    for (const std::string& name : s.free.parameters) require_known(name, key("free"), of_scene);
+    for (const FreeObject& object : s.free.objects) {
+        for (const std::string& name : object.parameters) {
+            require_known(name, key("free." + object.name), free_names(Owner::Body));
+        }
+    }
+    if (s.blur_schedule_m.empty() || s.blur_schedule_m.back() != 0.0) {
+        throw core::Error(key("blur_schedule_m"),
+                          "found no 0 at its end",
+                          "must end in 0, since blurred counts are not Poisson");
+    }
     for (const double blur : s.blur_schedule_m) {
-        require(std::isfinite(blur) && blur >= 0.0, "blur_schedule_m", blur, "must be at least 0");
+        core::check_range(blur, {0, true}, key("blur_schedule_m"));
     }
-    positive(s.loss_scale, "loss_scale");
-    if (s.element_tolerance) positive(*s.element_tolerance, "piece_tolerance");
-    if (s.max_pairs) positive(*s.max_pairs, "max_pairs");
-    positive(s.max_iterations, "max_iterations");
-    positive(s.search_rotations, "search_rotations");
-    require(
-        s.laplacian_weight >= 0.0, "laplacian_weight", s.laplacian_weight, "must be at least 0");
-    if (s.window_m) {
+    if (s.window_m && !((*s.window_m)[0] < (*s.window_m)[1])) {
         const auto [begin, end] = *s.window_m;
-        require(begin < end, "window_m", fmt::format("[{}, {}]", begin, end), "must grow");
+        throw core::Error(key("window_m"), fmt::format("found [{}, {}]", begin, end), "must grow");
     }
 }
 

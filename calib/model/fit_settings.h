@@ -6,20 +6,23 @@
 #include "renderer/core/settings.h"
 
 #include <array>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 namespace calib {
 
+enum class Owner;
+struct Parameter;
+
 /// What may move of one object of the model.
 struct FreeObject {
-    std::string name;  ///< of the glTF node
-    bool translation = false;
-    bool rotation = false;
-    bool size = false;
-    bool albedo = false;
-    bool vertices = false;  ///< heights along the start's vertex normals
+    std::string name;                  ///< of the glTF node
+    std::set<std::string> parameters;  ///< names of rows or of their groups, see parameter.h
+
+    bool frees(const Parameter& row) const;
 };
 
 /// How residuals are formed: `auto` takes poisson for integer-valued data.
@@ -32,12 +35,8 @@ enum class LossKind { None, Huber, Cauchy };
 struct FreeSettings {
     std::vector<FreeObject> objects;
     int point_scatterers = 0;
-    bool time_zero = false;
-    std::optional<double> time_zero_sigma_m;  ///< prior, in path length
-    bool ambient = true;
-    bool response_fwhm = false;
-    bool wall_bow = false;
-    bool wall_scale = false;
+    std::set<std::string> parameters{"ambient"};  ///< names of rows of the scene as a whole
+    std::map<std::string, double> prior_sigma;    ///< by row
 };
 
 /// MODEL.json: what is fitted, from where and how.
@@ -58,6 +57,11 @@ struct FitSettings {
     int max_iterations = 60;
 };
 
+/// Keys of `free` and names in its lists that belong to quantities of these owners.
+std::vector<std::string> free_names(Owner owner);
+/// What `free` may hold, in words.
+const char* free_help();
+
 void read_value(const core::Json& json, const std::string& where, FreeSettings& free);
 core::Json write_value(const FreeSettings& free);
 void read_value(const core::Json& json, const std::string& where, LossKind& loss);
@@ -65,24 +69,31 @@ void read_value(const core::Json& json, const std::string& where, LossKind& loss
 template <class Visitor>
 void for_each_field(FitSettings& s, Visitor&& visit) {
     visit("scene", s.scene, "scene.json whose geometry, wall and poses are the start");
-    visit("free",
-          s.free,
-          "node name -> any of pose|translation|rotation|size|albedo|vertices; "
-          "point_scatterers, time_zero, ambient, response_fwhm, wall");
+    visit("free", s.free, free_help());
     visit("response", s.response, "instrument response of the data");
     visit("start", s.start, "given, search, or a VOLUME.h5");
     visit("blur_schedule_m", s.blur_schedule_m, "blur of the stages, in path length [m]");
     visit("residual", s.residual, "how data and model are compared");
     visit("loss", s.loss, "robust loss on whole wall points, or null");
-    visit("loss_scale", s.loss_scale, "where the loss sets in, in median misfits of wall points");
-    visit("laplacian_weight", s.laplacian_weight, "cost of 1 mm of roughness of free vertices");
-    visit("piece_tolerance",
-          s.element_tolerance,
-          "relative L2 error of the model's elements; null: small against the data's noise");
-    visit("window_m", s.window_m, "path lengths that count [m]; null: all");
-    visit("max_pairs", s.max_pairs, "pairs that are used, spread over the wall; null: all");
-    visit("search_rotations", s.search_rotations, "rotations that start: search tries");
-    visit("max_iterations", s.max_iterations, "of one stage");
+    visit("loss_scale",
+          s.loss_scale,
+          core::above(0, "where the loss sets in, in median misfits of wall points"));
+    visit("laplacian_weight",
+          s.laplacian_weight,
+          core::at_least(0, "cost of 1 mm of roughness of free vertices"));
+    visit(
+        "element_tolerance",
+        s.element_tolerance,
+        core::above(
+            0, "relative L2 error of the model's elements; null: small against the data's noise"));
+    visit("window_m", s.window_m, core::Ranged{"path lengths that count [m]; null: all", {}});
+    visit("max_pairs",
+          s.max_pairs,
+          core::at_least(1, "pairs that are used, spread over the wall; null: all"));
+    visit("search_rotations",
+          s.search_rotations,
+          core::at_least(1, "rotations that start: search tries"));
+    visit("max_iterations", s.max_iterations, core::at_least(1, "of one stage"));
 }
 
 /// Throws core::Error naming the setting that is out of range.

@@ -20,7 +20,7 @@ constexpr std::size_t kMaxVertices = 2000;
 std::vector<Vec3> vertices_of(const SceneModel& model, const SceneState& state, std::size_t body) {
     std::vector<Vec3> result;
     for (std::size_t v = 0; v < model.bodies()[body].vertices.size(); ++v) {
-        result.push_back(model.vertex_world(state.bodies[body], body, v));
+        result.push_back(model.bodies()[body].vertex_world(state.bodies[body], v));
     }
     return result;
 }
@@ -67,7 +67,9 @@ std::vector<std::pair<std::string, SceneState>> symmetric_poses(const SceneModel
     std::vector<std::pair<std::string, SceneState>> result;
     for (std::size_t b = 0; b < model.bodies().size(); ++b) {
         const ModelBody& body = model.bodies()[b];
-        if (!body.free.rotation || body.free.vertices || body.vertices.size() > kMaxVertices) {
+        const bool is_rigid = !model.is_free(Owner::Body, b, Effect::Deforms);
+        if (!model.is_free(Owner::Body, b, Effect::Rotates) || !is_rigid ||
+            body.vertices.size() > kMaxVertices) {
             continue;
         }
         const std::vector<Vec3> vertices = vertices_of(model, state, b);
@@ -81,7 +83,7 @@ std::vector<std::pair<std::string, SceneState>> symmetric_poses(const SceneModel
                 SceneState turned = state;
                 BodyState& pose = turned.bodies[b];
                 pose.rotation = (turn * pose.rotation).normalized();
-                if (body.free.translation) {
+                if (model.is_free(Owner::Body, b, Effect::Translates)) {
                     pose.position_m = center + turn * (pose.position_m - center);
                 }
                 const std::vector<Vec3> moved = vertices_of(model, turned, b);

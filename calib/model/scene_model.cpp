@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "calib/model/scene_model.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <tuple>
 
 namespace calib {
@@ -16,12 +15,6 @@ using core::Vec3;
 
 // Albedo that stands for a surface without any, whose logarithm would not exist.
 constexpr double kMinAlbedo = 1e-6;
-
-std::vector<std::string> named(const std::string& owner, const std::vector<std::string>& parts) {
-    std::vector<std::string> names;
-    for (const std::string& part : parts) names.push_back(owner + "." + part);
-    return names;
-}
 
 void check_material(const renderer::Object& object) {
     const renderer::SurfaceTraits& traits = renderer::traits_of(object.material.model);
@@ -101,20 +94,18 @@ renderer::NodeGroup moving_node(const renderer::Object& object, const FreeSettin
 
 }  // namespace
 
-SceneModel::SceneModel(const renderer::SceneGeometry& geometry,
-                       const FitSettings& settings,
-                       bool scale_is_free)
-    : geometry_(geometry),
-      num_points_(settings.free.point_scatterers),
-      ambient_is_free_(settings.free.ambient) {
+SceneModel::SceneModel(const renderer::SceneGeometry& geometry, const FitSettings& settings)
+    : geometry_(geometry), num_points_(static_cast<std::size_t>(settings.free.point_scatterers)) {
     for (std::size_t i = 0; i < geometry.objects.size(); ++i) {
         if (geometry.objects[i].role == renderer::Role::RelayWall) continue;
         check_material(geometry.objects[i]);
         add_to_body(moving_node(geometry.objects[i], settings.free), geometry.objects[i], i);
     }
     for (std::uint32_t b = 0; b < bodies_.size(); ++b) find_normals(bodies_[b], facets_, b);
-    free_bodies(settings.free);
-    free_rest(settings.free, scale_is_free);
+    for (const FreeObject& wanted : settings.free.objects) free_by_name(wanted);
+    for (std::size_t b = 0; b < bodies_.size(); ++b) add_blocks(Owner::Body, b, settings.free);
+    for (std::size_t i = 0; i < num_points_; ++i) add_blocks(Owner::Point, i, settings.free);
+    add_blocks(Owner::Scene, 0, settings.free);
     if (num_columns_ == 0) {
         throw core::Error("model: free", "found nothing", "must name what is to be fitted");
     }
@@ -159,73 +150,66 @@ void SceneModel::add_to_body(const renderer::NodeGroup& node,
     }
 }
 
-void SceneModel::add_block(ParameterKind kind, std::size_t item, std::vector<std::string> names) {
-    ParameterBlock block{kind, item, num_columns_, static_cast<int>(names.size()), {}};
-    block.names = std::move(names);
-    num_columns_ += block.columns;
-    blocks_.push_back(std::move(block));
+void SceneModel::free_by_name(const FreeObject& wanted) {
+    const auto it = std::find_if(bodies_.begin(), bodies_.end(), [&](const ModelBody& body) {
+        return body.name == wanted.name;
+    });
+    if (it == bodies_.end()) {
+        throw core::Error("model: free",
+                          "found '" + wanted.name + "'",
+                          fmt::format("must be {}, point_scatterers or a node of the scene: {}",
+                                      fmt::join(free_names(Owner::Scene), ", "),
+                                      fmt::join(node_names(geometry_), ", ")));
+    }
+    it->free = wanted;
 }
 
-void SceneModel::free_bodies(const FreeSettings& free) {
-    for (const FreeObject& wanted : free.objects) {
-        const auto it = std::find_if(bodies_.begin(), bodies_.end(), [&](const ModelBody& body) {
-            return body.name == wanted.name;
-        });
-        if (it == bodies_.end()) {
-            std::string known;
-            for (const std::string& name : node_names(geometry_)) {
-                known += (known.empty() ? "" : ", ") + name;
-            }
-            throw core::Error("model: free",
-                              "found '" + wanted.name + "'",
-                              "must be time_zero, ambient, response_fwhm, wall, point_scatterers "
-                              "or a node of the scene: " +
-                                  known);
-        }
-        it->free = wanted;
-    }
-    for (std::size_t b = 0; b < bodies_.size(); ++b) {
-        const auto& [name, translation, rotation, size, albedo, vertices] = bodies_[b].free;
-        const std::string& owner = bodies_[b].name;
-        if (translation) {
-            add_block(ParameterKind::Translation, b, named(owner, {"x", "y", "z"}));
-        }
-        if (rotation) {
-            add_block(ParameterKind::Rotation,
-                      b,
-                      named(owner, {"rotation_x", "rotation_y", "rotation_z"}));
-        }
-        if (size) add_block(ParameterKind::Size, b, {owner + ".size"});
-        if (albedo) add_block(ParameterKind::Albedo, b, {owner + ".albedo"});
-        if (vertices) {
-            std::vector<std::string> names;
-            for (std::size_t v = 0; v < bodies_[b].vertices.size(); ++v) {
-                names.push_back(fmt::format("{}.height_{}", owner, v));
-            }
-            add_block(ParameterKind::Heights, b, names);
-        }
+void SceneModel::add_blocks(Owner owner, std::size_t item, const FreeSettings& free) {
+    const ModelBody* body = owner == Owner::Body ? &bodies_[item] : nullptr;
+    const std::string prefix = body != nullptr         ? body->name + "."
+                               : owner == Owner::Point ? fmt::format("point_{}.", item)
+                                                       : "";
+    for (const Parameter* row : parameters()) {
+        if (row->owner != owner) continue;
+        if (body != nullptr && !body->free.frees(*row)) continue;
+        if (owner == Owner::Scene && !free.parameters.contains(row->name)) continue;
+        ParameterBlock block{row, item, num_columns_, 0, row->columns};
+        if (row->body_columns != nullptr) block.names = row->body_columns(*body);
+        if (block.names.empty()) block.names = {row->name};
+        for (std::string& name : block.names) name = prefix + name;
+        block.columns = static_cast<int>(block.names.size());
+        num_columns_ += block.columns;
+        blocks_.push_back(std::move(block));
     }
 }
 
-void SceneModel::free_rest(const FreeSettings& free, bool scale_is_free) {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(num_points_); ++i) {
-        const std::string owner = fmt::format("point_{}", i);
-        add_block(ParameterKind::PointPosition, i, named(owner, {"x", "y", "z"}));
-        add_block(ParameterKind::PointAlbedo, i, {owner + ".albedo"});
-    }
-    if (free.time_zero) add_block(ParameterKind::TimeZero, 0, {"time_zero"});
-    if (free.ambient) add_block(ParameterKind::Ambient, 0, {"ambient"});
-    if (free.response_fwhm) add_block(ParameterKind::ResponseWidth, 0, {"response_fwhm"});
-    if (free.wall_bow) add_block(ParameterKind::WallBow, 0, {"wall.bow"});
-    if (free.wall_scale) add_block(ParameterKind::WallScale, 0, {"wall.scale"});
-    if (scale_is_free) add_block(ParameterKind::Scale, 0, {"scale"});
-}
-
-const ParameterBlock* SceneModel::find(ParameterKind kind, std::size_t item) const {
+const ParameterBlock* SceneModel::find(const Parameter& row, std::size_t item) const {
     for (const ParameterBlock& block : blocks_) {
-        if (block.kind == kind && block.item == item) return &block;
+        if (block.row == &row && block.item == item) return &block;
     }
     return nullptr;
+}
+
+std::vector<const ParameterBlock*> SceneModel::find(Owner owner,
+                                                    std::size_t item,
+                                                    Effect effect) const {
+    std::vector<const ParameterBlock*> found;
+    for (const ParameterBlock& block : blocks_) {
+        if (block.row->owner == owner && block.item == item && block.row->effect == effect) {
+            found.push_back(&block);
+        }
+    }
+    return found;
+}
+
+std::optional<LinearPrior> SceneModel::prior_of(const ParameterBlock& block,
+                                                const PriorSettings& settings) const {
+    if (block.row->body_prior != nullptr) {
+        return block.row->body_prior(bodies_[block.item], settings);
+    }
+    const auto sigma = settings.sigma.find(block.row->name);
+    if (block.row->prior == nullptr || sigma == settings.sigma.end()) return std::nullopt;
+    return LinearPrior{Eigen::MatrixXd::Identity(block.columns, block.columns), sigma->second};
 }
 
 std::vector<std::string> SceneModel::column_names() const {
@@ -238,19 +222,26 @@ std::vector<std::string> SceneModel::column_names() const {
 
 SceneState SceneModel::start() const {
     SceneState state;
-    for (const ModelBody& body : bodies_) {
-        BodyState& target = state.bodies.emplace_back();
-        target.position_m = body.origin_m;
-        target.log_albedo = std::log(body.albedo);
-        if (body.free.vertices) target.heights_m.assign(body.vertices.size(), 0.0);
+    state.bodies.resize(bodies_.size());
+    state.points.resize(num_points_);
+    for (const Parameter* row : parameters()) {
+        const std::size_t items = row->owner == Owner::Body    ? bodies_.size()
+                                  : row->owner == Owner::Point ? num_points_
+                                                               : 1;
+        for (std::size_t item = 0; item < items; ++item) {
+            const bool is_free = find(*row, item) != nullptr;
+            if (row->start_body != nullptr) {
+                row->start_body(bodies_[item], is_free, state.bodies[item]);
+            } else if (row->storage == nullptr) {
+                row->numbers(state, item)[0] = is_free ? row->start : row->fixed;
+            }
+        }
     }
-    state.points.resize(static_cast<std::size_t>(num_points_));
-    state.has_ambient = ambient_is_free_;
     return state;
 }
 
-Vec3 SceneModel::vertex_world(const BodyState& state, std::size_t body, std::size_t vertex) const {
-    const ModelVertex& v = bodies_[body].vertices[vertex];
+Vec3 ModelBody::vertex_world(const BodyState& state, std::size_t vertex) const {
+    const ModelVertex& v = vertices[vertex];
     Vec3 local = v.position_m;
     if (!state.heights_m.empty()) local += state.heights_m[vertex] * v.normal;
     return state.position_m + std::exp(state.log_size) * (state.rotation * local);
@@ -261,35 +252,12 @@ FacetMotion SceneModel::motion(const SceneState& state, std::size_t facet) const
     const BodyState& body = state.bodies[f.body];
     FacetMotion motion;
     for (std::size_t i = 0; i < 3; ++i) {
-        motion.corners[i] = vertex_world(body, f.body, f.vertices[i]);
+        motion.corners[i] = bodies_[f.body].vertex_world(body, f.vertices[i]);
     }
-    const auto add = [&](int column, const auto& derivative_of_corner) {
-        motion.columns.push_back(column);
-        auto& target = motion.by_column.emplace_back();
-        for (std::size_t i = 0; i < 3; ++i) target[i] = derivative_of_corner(i);
-    };
     for (const ParameterBlock& block : blocks_) {
-        if (block.item != f.body) continue;
-        const int first = block.first_column;
-        if (block.kind == ParameterKind::Translation) {
-            for (int a = 0; a < 3; ++a) add(first + a, [&](std::size_t) { return Vec3::Unit(a); });
-        } else if (block.kind == ParameterKind::Rotation) {
-            for (int a = 0; a < 3; ++a) {
-                add(first + a, [&](std::size_t i) {
-                    return Vec3(Vec3::Unit(a).cross(motion.corners[i] - body.position_m));
-                });
-            }
-        } else if (block.kind == ParameterKind::Size) {
-            add(first, [&](std::size_t i) { return Vec3(motion.corners[i] - body.position_m); });
-        } else if (block.kind == ParameterKind::Heights) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                const std::uint32_t v = f.vertices[k];
-                const Vec3 along =
-                    std::exp(body.log_size) * (body.rotation * bodies_[f.body].vertices[v].normal);
-                add(first + static_cast<int>(v),
-                    [&](std::size_t i) { return i == k ? along : Vec3(Vec3::Zero()); });
-            }
-        }
+        const auto& move = block.row->move_facet;
+        if (move == nullptr || block.item != f.body) continue;
+        move({{bodies_[f.body], body}, f, block.first_column}, motion);
     }
     return motion;
 }
@@ -304,6 +272,7 @@ renderer::SceneGeometry SceneModel::posed(const SceneState& state) const {
             index[{p.x(), p.y(), p.z()}] = v;
         }
         const double size = std::exp(body.log_size);
+        const double factor = std::exp(sum_of(state, Owner::Body, b, Effect::Multiplies));
         const auto move = [&](core::Transform& node) {
             const core::Mat3 turn = size * body.rotation.toRotationMatrix();
             node.linear() = turn * node.linear();
@@ -314,11 +283,11 @@ renderer::SceneGeometry SceneModel::posed(const SceneState& state) const {
             renderer::Object& object = geometry.objects[o];
             for (Vec3& vertex : object.mesh.vertices) {
                 const Vec3 p = vertex - bodies_[b].origin_m;
-                vertex = vertex_world(body, b, index.at({p.x(), p.y(), p.z()}));
+                vertex = bodies_[b].vertex_world(body, index.at({p.x(), p.y(), p.z()}));
             }
             object.mesh.normals.clear();
-            object.material.albedo = std::min(
-                1.0, object.material.albedo * std::exp(body.log_albedo) / bodies_[b].albedo);
+            object.material.albedo =
+                std::min(1.0, object.material.albedo * factor / bodies_[b].albedo);
             move(object.world_from_node);
             // Nodes within the body move with it, those above it stay.
             bool is_within = false;

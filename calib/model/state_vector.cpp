@@ -1,46 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "calib/model/state_vector.h"
 
-#include <span>
-#include <type_traits>
-
 namespace calib {
 namespace {
 
-// The numbers of a block, which lie side by side in the state; a rotation has none of this kind.
-template <class State>
-auto numbers_of(State& state, const ParameterBlock& block) {
-    using Number = std::conditional_t<std::is_const_v<State>, const double, double>;
-    const auto one = [](Number& number) { return std::span<Number>(&number, 1); };
-    switch (block.kind) {
-        case ParameterKind::Translation:
-            return std::span<Number>(state.bodies[block.item].position_m.data(), 3);
-        case ParameterKind::Size:
-            return one(state.bodies[block.item].log_size);
-        case ParameterKind::Albedo:
-            return one(state.bodies[block.item].log_albedo);
-        case ParameterKind::Heights:
-            return std::span<Number>(state.bodies[block.item].heights_m);
-        case ParameterKind::PointPosition:
-            return std::span<Number>(state.points[block.item].position_m.data(), 3);
-        case ParameterKind::PointAlbedo:
-            return one(state.points[block.item].log_albedo);
-        case ParameterKind::TimeZero:
-            return one(state.time_zero_m);
-        case ParameterKind::Ambient:
-            return one(state.log_ambient);
-        case ParameterKind::ResponseWidth:
-            return one(state.log_width);
-        case ParameterKind::WallBow:
-            return one(state.bow_m);
-        case ParameterKind::WallScale:
-            return one(state.log_wall_scale);
-        case ParameterKind::Scale:
-            return one(state.log_scale);
-        case ParameterKind::Rotation:
-            break;
-    }
-    return std::span<Number>();
+bool is_turn(const ParameterBlock& block) {
+    return block.row->effect == Effect::Rotates;
 }
 
 }  // namespace
@@ -49,12 +14,12 @@ StateVector::StateVector(const SceneModel& model, const SceneState& state)
     : model_(model), state_(state) {
     quaternions_wxyz_.reserve(model.blocks().size());  // blocks_ points into it
     for (const ParameterBlock& block : model.blocks()) {
-        if (block.kind == ParameterKind::Rotation) {
+        if (is_turn(block)) {
             const auto& q = state.bodies[block.item].rotation;
             quaternions_wxyz_.emplace_back(q.w(), q.x(), q.y(), q.z());
             blocks_.push_back(quaternions_wxyz_.back().data());
         } else {
-            blocks_.push_back(numbers_of(state_, block).data());
+            blocks_.push_back(block.row->numbers(state_, block.item).data());
         }
     }
 }
@@ -63,7 +28,7 @@ SceneState StateVector::state() const {
     SceneState state = state_;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
         const ParameterBlock& block = model_.blocks()[b];
-        if (block.kind != ParameterKind::Rotation) continue;
+        if (!is_turn(block)) continue;
         const double* wxyz = blocks_[b];
         state.bodies[block.item].rotation =
             Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
@@ -80,7 +45,7 @@ std::vector<double> StateVector::numbers() const {
 }
 
 int StateVector::ambient_size(const ParameterBlock& block) {
-    return block.kind == ParameterKind::Rotation ? 4 : block.columns;
+    return is_turn(block) ? 4 : block.columns;
 }
 
 // A turn w before q gives dq = (0, w/2) q, hence w = 2 vec(dq q*).
@@ -98,7 +63,7 @@ SceneState moved_by(const SceneModel& model, const SceneState& state, const Eige
     SceneState moved = state;
     for (const ParameterBlock& block : model.blocks()) {
         const auto part = step.segment(block.first_column, block.columns);
-        if (block.kind == ParameterKind::Rotation) {
+        if (is_turn(block)) {
             const core::Vec3 turn = part;
             const double angle = turn.norm();
             if (angle == 0.0) continue;
@@ -106,7 +71,7 @@ SceneState moved_by(const SceneModel& model, const SceneState& state, const Eige
             rotation = (Eigen::AngleAxisd(angle, turn / angle) * rotation).normalized();
         } else {
             Eigen::Index i = 0;
-            for (double& number : numbers_of(moved, block)) number += part[i++];
+            for (double& number : block.row->numbers(moved, block.item)) number += part[i++];
         }
     }
     return moved;
@@ -116,15 +81,15 @@ Eigen::VectorXd difference(const SceneModel& model, const SceneState& from, cons
     Eigen::VectorXd step = Eigen::VectorXd::Zero(model.num_columns());
     for (const ParameterBlock& block : model.blocks()) {
         auto part = step.segment(block.first_column, block.columns);
-        if (block.kind == ParameterKind::Rotation) {
+        if (is_turn(block)) {
             Eigen::Quaterniond turn =
                 to.bodies[block.item].rotation * from.bodies[block.item].rotation.conjugate();
             if (turn.w() < 0.0) turn.coeffs() *= -1.0;
             const Eigen::AngleAxisd angle_axis(turn);
             part = angle_axis.angle() * angle_axis.axis();
         } else {
-            const auto before = numbers_of(from, block);
-            const auto after = numbers_of(to, block);
+            const auto before = block.row->numbers(from, block.item);
+            const auto after = block.row->numbers(to, block.item);
             for (std::size_t i = 0; i < after.size(); ++i) {
                 part[static_cast<Eigen::Index>(i)] = after[i] - before[i];
             }

@@ -101,6 +101,66 @@ std::vector<cv::Point3f> board_points(const cv::Size& inner, double square_m) {
     return points;
 }
 
+void check(const BoardSettings& settings) {
+    const std::size_t count = settings.images.size();
+    if (count < 3) {
+        throw core::Error("boards.images",
+                          fmt::format("found {} images", count),
+                          "a camera needs at least 3 views of the board, tilted differently");
+    }
+    if (settings.wall_image >= static_cast<int>(count)) {
+        throw core::Error("boards.wall_image",
+                          fmt::format("found {}", settings.wall_image),
+                          fmt::format("must be from 0 to {}", count - 1));
+    }
+}
+
+// The camera, but for where it stands; where every image's board stands before it.
+struct SolvedCamera {
+    CameraCalibration camera;
+    std::vector<cv::Mat> rotations;
+    std::vector<cv::Mat> translations;
+};
+
+SolvedCamera solve_camera(const std::vector<std::vector<cv::Point2f>>& corners,
+                          const std::vector<cv::Point3f>& board,
+                          const cv::Size& size) {
+    cv::Mat intrinsics;
+    cv::Mat distortion;
+    cv::Mat sigma;
+    SolvedCamera solved;
+    CameraCalibration& camera = solved.camera;
+    camera.reprojection_rms_px =
+        cv::calibrateCamera(std::vector(corners.size(), board),
+                            corners,
+                            size,
+                            intrinsics,
+                            distortion,
+                            solved.rotations,
+                            solved.translations,
+                            sigma,
+                            cv::noArray(),
+                            cv::noArray(),
+                            cv::CALIB_ZERO_TANGENT_DIST | cv::CALIB_FIX_K3);
+    camera.focal_x_px = intrinsics.at<double>(0, 0);
+    camera.focal_y_px = intrinsics.at<double>(1, 1);
+    camera.center_x_px = intrinsics.at<double>(0, 2);
+    camera.center_y_px = intrinsics.at<double>(1, 2);
+    camera.radial = {distortion.at<double>(0), distortion.at<double>(1)};
+    for (int i = 0; i < 4; ++i) {
+        camera.sigma_px[static_cast<std::size_t>(i)] = sigma.at<double>(i);
+    }
+    return solved;
+}
+
+// A wall point (x, y, 0) is seen at K (x r_x + y r_y + t).
+core::Mat3 wall_from_pixel(const CameraCalibration& camera) {
+    core::Mat3 pixel_from_wall;
+    pixel_from_wall << camera.camera_from_wall.linear().col(0),
+        camera.camera_from_wall.linear().col(1), camera.camera_from_wall.translation();
+    return (intrinsics_of(camera) * pixel_from_wall).inverse();
+}
+
 }  // namespace
 
 Vec2 CameraCalibration::wall_point(const Vec2& pixel) const {
@@ -115,58 +175,19 @@ Vec2 CameraCalibration::wall_point(const Vec2& pixel) const {
 }
 
 CameraCalibration calibrate_camera(const BoardSettings& settings) {
-    const int count = static_cast<int>(settings.images.size());
-    if (count < 3) {
-        throw core::Error("boards.images",
-                          fmt::format("found {} images", count),
-                          "a camera needs at least 3 views of the board, tilted differently");
-    }
-    if (settings.wall_image < 0 || settings.wall_image >= count) {
-        throw core::Error("boards.wall_image",
-                          fmt::format("found {}", settings.wall_image),
-                          fmt::format("must be from 0 to {}", count - 1));
-    }
+    check(settings);
     const cv::Size inner(settings.inner_corners[0], settings.inner_corners[1]);
     cv::Size size;
     std::vector<std::vector<cv::Point2f>> corners;
     for (const std::string& path : settings.images) {
         corners.push_back(find_corners(path, inner, size));
     }
-    const std::vector<std::vector<cv::Point3f>> boards(corners.size(),
-                                                       board_points(inner, settings.square_m));
-    cv::Mat intrinsics;
-    cv::Mat distortion;
-    std::vector<cv::Mat> rotations;
-    std::vector<cv::Mat> translations;
-    cv::Mat sigma;
-    CameraCalibration camera;
-    camera.reprojection_rms_px =
-        cv::calibrateCamera(boards,
-                            corners,
-                            size,
-                            intrinsics,
-                            distortion,
-                            rotations,
-                            translations,
-                            sigma,
-                            cv::noArray(),
-                            cv::noArray(),
-                            cv::CALIB_ZERO_TANGENT_DIST | cv::CALIB_FIX_K3);
-    camera.focal_x_px = intrinsics.at<double>(0, 0);
-    camera.focal_y_px = intrinsics.at<double>(1, 1);
-    camera.center_x_px = intrinsics.at<double>(0, 2);
-    camera.center_y_px = intrinsics.at<double>(1, 2);
-    camera.radial = {distortion.at<double>(0), distortion.at<double>(1)};
-    for (int i = 0; i < 4; ++i) {
-        camera.sigma_px[static_cast<std::size_t>(i)] = sigma.at<double>(i);
-    }
+    const auto [solved, rotations, translations] =
+        solve_camera(corners, board_points(inner, settings.square_m), size);
+    CameraCalibration camera = solved;
     const auto wall = static_cast<std::size_t>(settings.wall_image);
     camera.camera_from_wall = camera_from_wall(rotations[wall], translations[wall]);
-    // A wall point (x, y, 0) is seen at K (x r_x + y r_y + t).
-    core::Mat3 pixel_from_wall;
-    pixel_from_wall << camera.camera_from_wall.linear().col(0),
-        camera.camera_from_wall.linear().col(1), camera.camera_from_wall.translation();
-    camera.wall_from_pixel = (intrinsics_of(camera) * pixel_from_wall).inverse();
+    camera.wall_from_pixel = wall_from_pixel(camera);
     return camera;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/types.h"
+#include "renderer/core/settings.h"
 
 #include <array>
 #include <cstdint>
@@ -21,9 +21,13 @@ struct BoardSettings {
 template <class Visitor>
 void for_each_field(BoardSettings& s, Visitor&& visit) {
     visit("images", s.images, "PNG or JPEG photographs of the board in several poses");
-    visit("inner_corners", s.inner_corners, "corners between four squares, per row and per column");
-    visit("square_m", s.square_m, "edge of a square [m]");
-    visit("wall_image", s.wall_image, "the image whose board lies on the wall, from 0");
+    visit("inner_corners",
+          s.inner_corners,
+          core::at_least(3, "corners between four squares, per row and per column"));
+    visit("square_m", s.square_m, core::above(0, "edge of a square [m]"));
+    visit("wall_image",
+          s.wall_image,
+          core::at_least(0, "the image whose board lies on the wall, from 0"));
 }
 
 /// A pinhole camera with two radial distortion terms; world is the wall's frame.

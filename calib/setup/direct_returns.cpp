@@ -26,9 +26,13 @@ struct Peak {
     int last_bin = 0;
 };
 
+bool has_tail(ResponseShape shape) {
+    return shape == ResponseShape::GaussianExponential;
+}
+
 template <class T>
 T cumulative(const T& delay, const T& sigma, const T& tail, ResponseShape shape) {
-    if (shape == ResponseShape::Gaussian) return core::gaussian_cdf(delay, sigma);
+    if (!has_tail(shape)) return core::gaussian_cdf(delay, sigma);
     return core::exponential_gaussian_cdf(delay, sigma, tail);
 }
 
@@ -172,7 +176,7 @@ Eigen::Matrix3d schur_of_shared(const core::Capture& capture,
         total += information.bottomRightCorner<3, 3>() -
                  point.coupling.transpose() * point.own.inverse() * point.coupling;
     }
-    if (shape == ResponseShape::Gaussian) total(1, 1) += 1.0;  // no tail to know
+    if (!has_tail(shape)) total(1, 1) += 1.0;  // no tail to know
     return total;
 }
 
@@ -218,7 +222,7 @@ DirectReturns fit_direct_returns(const core::Capture& capture, ResponseShape sha
             peaks[p].last_bin - peaks[p].first_bin + 1);
         problem.AddResidualBlock(cost, nullptr, peaks[p].parameters.data(), shared.data());
     }
-    if (shape == ResponseShape::Gaussian) {
+    if (!has_tail(shape)) {
         problem.SetManifold(shared.data(), new ceres::SubsetManifold(3, {1}));
     }
     ceres::Solver::Options options;
@@ -235,10 +239,10 @@ DirectReturns fit_direct_returns(const core::Capture& capture, ResponseShape sha
     }
     DirectReturns result;
     result.sigma_m = std::exp(shared[0]);
-    result.tail_m = shape == ResponseShape::Gaussian ? 0.0 : std::exp(shared[1]);
+    result.tail_m = has_tail(shape) ? std::exp(shared[1]) : 0.0;
     result.ambient = std::exp(shared[2]);
     store_errors(capture, peaks, shared, shape, result);
-    if (shape != ResponseShape::Gaussian && !(result.tail_error_m < result.tail_m)) {
+    if (has_tail(shape) && !(result.tail_error_m < result.tail_m)) {
         // A tail shorter than its own error is none; its delay would only blur the peaks' places.
         return fit_direct_returns(capture, ResponseShape::Gaussian);
     }

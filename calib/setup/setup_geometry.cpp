@@ -101,10 +101,15 @@ struct KnownCost {
     }
 };
 
+// Commands in volts leave the gain open.
+bool has_known_gain(const SetupObservations& o) {
+    return o.galvo_gain || o.command_unit == CommandUnit::Rad;
+}
+
 std::vector<int> held_parameters(const SetupObservations& o) {
     std::vector<int> held;
     if (!o.camera) held = {kSpin, kFootX, kFootY};
-    if (o.command_unit == CommandUnit::Rad && !o.galvo_gain) {
+    if (has_known_gain(o) && !o.galvo_gain) {
         held.push_back(kGainX);
         held.push_back(kGainY);
     }
@@ -157,7 +162,7 @@ std::vector<std::array<double, 9>> starts(const SetupObservations& o) {
     for (const double tilt_x : {0.0, -0.5, 0.5}) {
         for (const double tilt_y : {0.0, -0.5, 0.5}) {
             for (const double scale : {1.0, 0.2}) {
-                if (scale != 1.0 && (o.galvo_gain || o.command_unit == CommandUnit::Rad)) continue;
+                if (scale != 1.0 && has_known_gain(o)) continue;
                 auto one = start;
                 one[kTiltX] = tilt_x;
                 one[kTiltY] = tilt_y;
@@ -191,7 +196,7 @@ void refuse_if_singular(const SetupObservations& o, const SetupGeometry& setup) 
     if (!is_loose) return;
     std::string help = "a view of the wall tilted by some 30 degrees";
     if (!o.wall_distance_m) help += ", known.wall_distance_m";
-    if (!o.galvo_gain && o.command_unit == CommandUnit::Volt) help += ", known.galvo_gain";
+    if (!has_known_gain(o)) help += ", known.galvo_gain";
     if (!o.time_zero_m) help += ", known.time_zero_m";
     if (!o.camera) help += ", a camera with boards";
     const std::string which = setup.uncertainty.unidentifiable.empty()

@@ -22,7 +22,7 @@ Background::Background(const BackgroundSettings& settings,
     : settings_(settings), num_bins_(num_bins), mean_(num_zones * num_bins, kPriorCounts) {}
 
 void Background::learn(std::span<const double> counts, std::span<const double> weights) {
-    if (settings_.kind == BackgroundKind::Flat) {
+    if (is_flat()) {
         set_levels(counts, weights);
         return;
     }
@@ -32,9 +32,15 @@ void Background::learn(std::span<const double> counts, std::span<const double> w
     first_.clear();
 }
 
+// Where the background was subtracted already, something is always left of it.
+bool Background::makes_suspicious(double awaited, double dispersion) const {
+    constexpr double kDeadCounts = 30.0;
+    return is_flat() || awaited > kDeadCounts * dispersion;
+}
+
 void Background::learn_all(const std::vector<std::vector<double>>& frames,
                            std::span<const double> weights) {
-    if (settings_.kind == BackgroundKind::Flat) {
+    if (is_flat()) {
         set_levels(frames.front(), weights);
     } else {
         average(frames);
@@ -94,14 +100,14 @@ void Background::follow(std::span<const double> counts,
         double count = 0.0;
         for (std::size_t i = begin; i < begin + num_bins_; ++i) {
             if (weights[i] == 0.0) continue;
-            if (settings_.kind == BackgroundKind::Learn) {
+            if (!is_flat()) {
                 mean_[i] += gain * (share(i) - mean_[i]);
                 mean_[i] = std::max(mean_[i], kPriorCounts / settings_.memory_frames);
             }
             sum += share(i);
             count += 1.0;
         }
-        if (settings_.kind == BackgroundKind::Learn || count == 0.0) continue;
+        if (!is_flat() || count == 0.0) continue;
         const double level = mean_[begin] + gain * (sum / count - mean_[begin]);
         std::fill_n(mean_.begin() + static_cast<std::ptrdiff_t>(begin),
                     num_bins_,

@@ -34,11 +34,16 @@ class Background {
 
     const std::vector<double>& mean() const { return mean_; }
 
+    /// Whether a zone that counted nothing must be dead, where so many counts were expected and
+    /// vary by `dispersion` times as much as Poisson's.
+    bool makes_suspicious(double awaited, double dispersion) const;
+
     /// Variance of a bin's count beside what is expected, relative to its Poisson variance: the
     /// background is itself known from so many frames only.
     double excess_variance() const { return 1.0 / frames_seen_; }
 
  private:
+    bool is_flat() const { return settings_.kind == BackgroundKind::Flat; }
     void average(const std::vector<std::vector<double>>& frames);
     void set_levels(std::span<const double> counts, std::span<const double> weights);
 

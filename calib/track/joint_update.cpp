@@ -217,18 +217,4 @@ JointUpdate update_jointly(const TargetResponse& response,
     return result;
 }
 
-SeenMatrix fisher_information(const TargetResponse& response,
-                              const FrameCounts& frame,
-                              const SeenVector& target) {
-    // A prior so wide that it holds no information.
-    constexpr double kWide = 1e12;
-    const Gaussian prior{target, kWide * MatrixXd::Identity(kSeen, kSeen)};
-    Problem problem(response, frame, {prior});
-    problem.evaluate(target);
-    MatrixXd information;
-    VectorXd slope;
-    problem.linearise(target, information, slope);
-    return information;
-}
-
 }  // namespace calib

@@ -39,10 +39,4 @@ JointUpdate update_jointly(const TargetResponse& response,
                            const std::vector<Gaussian>& priors,
                            const std::function<bool(const core::Vec3&)>& hidden);
 
-/// Fisher information that a frame with these expected counts holds about a target's position and
-/// logarithm of strength.
-SeenMatrix fisher_information(const TargetResponse& response,
-                              const FrameCounts& frame,
-                              const SeenVector& target);
-
 }  // namespace calib

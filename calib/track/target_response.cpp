@@ -59,7 +59,6 @@ TargetResponse::TargetResponse(const core::SensorFootprints& footprints,
                                const ZoneCrosstalk& crosstalk)
     : axis_(axis),
       normal_(footprints.normal),
-      kind_(target.kind),
       crosstalk_(crosstalk),
       pulse_(response_sigma_m(sigma_m, target.radius_m, axis.bin_width_m), axis.bin_width_m),
       sigma_m_(response_sigma_m(sigma_m, target.radius_m, axis.bin_width_m)) {
@@ -76,7 +75,7 @@ TargetResponse::TargetResponse(const core::SensorFootprints& footprints,
         Zone zone;
         zone.seen = legs(footprint.seen);
         const std::vector<Leg> lit = legs(footprint.lit);
-        if (kind_ == TargetKind::Retroreflective) {
+        if (target.returns_light()) {
             for (std::size_t i = 0; i < zone.seen.size(); ++i) {
                 Leg point = zone.seen[i];
                 point.weight *= footprint.seen_irradiance[i];
@@ -230,7 +229,7 @@ std::vector<TargetResponse::Window> TargetResponse::evaluate(const Vec3& positio
         const auto part = values.subspan(z * num_bins(), num_bins());
         const auto slope =
             gradient.empty() ? gradient : gradient.subspan(z * num_bins(), num_bins());
-        if (kind_ == TargetKind::Retroreflective) {
+        if (!zones_[z].there_and_back.empty()) {
             windows.push_back(add_retroreflective(zones_[z], position_m, part, slope));
         } else {
             if (!flooded) lit = lit_pulse(zones_[z].lit, position_m);

@@ -140,7 +140,6 @@ class TargetResponse {
 
     core::TimeAxis axis_;
     core::Vec3 normal_;
-    TargetKind kind_;
     ZoneCrosstalk crosstalk_;
     PulseTable pulse_;
     double sigma_m_;

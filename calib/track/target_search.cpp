@@ -20,70 +20,76 @@ bool SearchBox::holds(const Vec3& position_m) const {
 }
 
 TargetSearch::TargetSearch(const TargetResponse& response, const SearchBox& box, double cell_m) {
-    std::array<double, 3> pitch_m{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double extent_m = box.ranges_m[axis][1] - box.ranges_m[axis][0];
-        cells_[axis] = std::max(1, static_cast<int>(std::ceil(extent_m / cell_m)));
-        pitch_m[axis] = extent_m / cells_[axis];
-    }
-    const auto place = [&](std::size_t axis, int i) {
-        return box.ranges_m[axis][0] + (i + 0.5) * pitch_m[axis];
-    };
-    for (int z = 0; z < cells_[2]; ++z) {
-        for (int y = 0; y < cells_[1]; ++y) {
-            for (int x = 0; x < cells_[0]; ++x) {
-                positions_.push_back(box.world_from_wall *
-                                     Vec3(place(0, x), place(1, y), place(2, z)));
-            }
-        }
-    }
-    struct Cell {
-        std::vector<Piece> pieces;
-        std::vector<float> values;
-    };
-    std::vector<Cell> made(positions_.size());
+    lay_grid(box, cell_m);
+    // Cells are computed in parallel and stored in their order.
+    std::vector<Cell> cells(positions_.size());
     constexpr std::size_t kBlock = 64;
     core::parallel_blocks(positions_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
         std::vector<double> values(response.size());
         for (std::size_t c = begin; c < end; ++c) {
             const auto windows = response.evaluate(positions_[c], values, {});
             for (std::size_t zone = 0; zone < windows.size(); ++zone) {
-                if (windows[zone].begin >= windows[zone].end) continue;
-                const std::size_t first =
-                    zone * response.num_bins() + static_cast<std::size_t>(windows[zone].begin);
-                const auto size = static_cast<std::size_t>(windows[zone].end - windows[zone].begin);
-                made[c].pieces.push_back({static_cast<std::uint32_t>(first),
-                                          static_cast<std::uint32_t>(size),
-                                          static_cast<std::uint32_t>(made[c].values.size())});
-                for (std::size_t i = 0; i < size; ++i) {
-                    made[c].values.push_back(static_cast<float>(values[first + i]));
-                }
+                const auto first = zone * response.num_bins();
+                cells[c].add(
+                    std::span(values).subspan(first, response.num_bins()), first, windows[zone]);
             }
         }
     });
-    for (const Cell& cell : made) {
-        first_piece_.push_back(static_cast<std::uint32_t>(pieces_.size()));
-        for (Piece piece : cell.pieces) {
-            piece.at += static_cast<std::uint32_t>(values_.size());
-            pieces_.push_back(piece);
-        }
-        values_.insert(values_.end(), cell.values.begin(), cell.values.end());
-    }
+    for (const Cell& cell : cells) append(cell);
     first_piece_.push_back(static_cast<std::uint32_t>(pieces_.size()));
 }
 
-std::size_t TargetSearch::index(int x, int y, int z) const {
-    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(cells_[1]) +
-            static_cast<std::size_t>(y)) *
-               static_cast<std::size_t>(cells_[0]) +
-           static_cast<std::size_t>(x);
+void TargetSearch::lay_grid(const SearchBox& box, double cell_m) {
+    std::array<double, 3> pitch_m{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double extent_m = box.ranges_m[axis][1] - box.ranges_m[axis][0];
+        cells_[axis] = std::max(1, static_cast<int>(std::ceil(extent_m / cell_m)));
+        pitch_m[axis] = extent_m / cells_[axis];
+    }
+    const auto middle = [&](std::size_t axis, int i) {
+        return box.ranges_m[axis][0] + (i + 0.5) * pitch_m[axis];
+    };
+    for (int z = 0; z < cells_[2]; ++z) {
+        for (int y = 0; y < cells_[1]; ++y) {
+            for (int x = 0; x < cells_[0]; ++x) {
+                positions_.push_back(box.world_from_wall *
+                                     Vec3(middle(0, x), middle(1, y), middle(2, z)));
+            }
+        }
+    }
 }
 
-std::vector<Candidate> TargetSearch::find(const FrameCounts& frame,
-                                          std::size_t most,
-                                          const Vec3& offset_m) const {
-    // Normal approximation: residuals over variances, and inverse variances. A bin with many more
-    // counts than expected has a larger variance than the background alone says.
+// Keeps the bins of a zone that are not 0.
+void TargetSearch::Cell::add(std::span<const double> zone,
+                             std::size_t first,
+                             const TargetResponse::Window& window) {
+    if (window.begin >= window.end) return;
+    pieces.push_back({static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(window.begin),
+                      static_cast<std::uint32_t>(window.end - window.begin),
+                      static_cast<std::uint32_t>(values.size())});
+    for (int b = window.begin; b < window.end; ++b) {
+        values.push_back(static_cast<float>(zone[static_cast<std::size_t>(b)]));
+    }
+}
+
+void TargetSearch::append(const Cell& cell) {
+    first_piece_.push_back(static_cast<std::uint32_t>(pieces_.size()));
+    for (Piece piece : cell.pieces) {
+        piece.at += static_cast<std::uint32_t>(values_.size());
+        pieces_.push_back(piece);
+    }
+    values_.insert(values_.end(), cell.values.begin(), cell.values.end());
+}
+
+std::size_t TargetSearch::index(const std::array<int, 3>& cell) const {
+    const auto along = [&](std::size_t axis) { return static_cast<std::size_t>(cells_[axis]); };
+    const auto at = [&](std::size_t axis) { return static_cast<std::size_t>(cell[axis]); };
+    return (at(2) * along(1) + at(1)) * along(0) + at(0);
+}
+
+// Normal approximation: residuals over variances, and inverse variances. A bin with many more
+// counts than expected has a larger variance than the background alone says.
+std::vector<TargetSearch::Score> TargetSearch::score(const FrameCounts& frame) const {
     const std::size_t size = frame.counts.size();
     std::vector<float> pull(size);
     std::vector<float> precision(size);
@@ -92,8 +98,7 @@ std::vector<Candidate> TargetSearch::find(const FrameCounts& frame,
         precision[i] = static_cast<float>(frame.weights[i] / variance);
         pull[i] = static_cast<float>(frame.counts[i] - frame.background[i]) * precision[i];
     }
-    std::vector<float> scores(positions_.size(), 0.0F);
-    std::vector<float> strengths(positions_.size(), 0.0F);
+    std::vector<Score> scores(positions_.size());
     for (std::size_t c = 0; c < positions_.size(); ++c) {
         float slope = 0.0F;
         float curvature = 0.0F;
@@ -108,27 +113,37 @@ std::vector<Candidate> TargetSearch::find(const FrameCounts& frame,
             }
         }
         if (slope <= 0.0F || curvature <= 0.0F) continue;
-        scores[c] = 0.5F * slope * slope / curvature;
-        strengths[c] = slope / curvature;
+        scores[c] = {0.5F * slope * slope / curvature, slope / curvature};
     }
+    return scores;
+}
+
+// Whether no cell beside this one is better.
+bool TargetSearch::is_peak(const std::vector<Score>& scores, const std::array<int, 3>& cell) const {
+    const float own = scores[index(cell)].value;
+    if (own <= 0.0F) return false;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (const int step : {-1, 1}) {
+            std::array<int, 3> beside = cell;
+            beside[axis] += step;
+            const bool is_inside = beside[axis] >= 0 && beside[axis] < cells_[axis];
+            if (is_inside && scores[index(beside)].value > own) return false;
+        }
+    }
+    return true;
+}
+
+std::vector<Candidate> TargetSearch::find(const FrameCounts& frame,
+                                          std::size_t most,
+                                          const Vec3& offset_m) const {
+    const std::vector<Score> scores = score(frame);
     std::vector<Candidate> found;
     for (int z = 0; z < cells_[2]; ++z) {
         for (int y = 0; y < cells_[1]; ++y) {
             for (int x = 0; x < cells_[0]; ++x) {
-                const std::size_t c = index(x, y, z);
-                if (scores[c] <= 0.0F) continue;
-                const auto beats = [&](int dx, int dy, int dz) {
-                    const int i = x + dx, j = y + dy, k = z + dz;
-                    if (i < 0 || j < 0 || k < 0 || i >= cells_[0] || j >= cells_[1] ||
-                        k >= cells_[2]) {
-                        return true;
-                    }
-                    return scores[c] >= scores[index(i, j, k)];
-                };
-                if (beats(1, 0, 0) && beats(-1, 0, 0) && beats(0, 1, 0) && beats(0, -1, 0) &&
-                    beats(0, 0, 1) && beats(0, 0, -1)) {
-                    found.push_back({positions_[c] + offset_m, strengths[c], scores[c]});
-                }
+                if (!is_peak(scores, {x, y, z})) continue;
+                const std::size_t c = index({x, y, z});
+                found.push_back({positions_[c] + offset_m, scores[c].strength, scores[c].value});
             }
         }
     }

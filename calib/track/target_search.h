@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace calib {
@@ -45,7 +46,24 @@ class TargetSearch {
         std::uint32_t size = 0;
         std::uint32_t at = 0;  ///< in values_
     };
-    std::size_t index(int x, int y, int z) const;
+    /// A histogram of one cell: the bins that are not 0.
+    struct Cell {
+        std::vector<Piece> pieces;
+        std::vector<float> values;
+
+        void add(std::span<const double> zone,
+                 std::size_t first,
+                 const TargetResponse::Window& window);
+    };
+    struct Score {
+        float value = 0.0F;  ///< see Candidate; 0 where a target explains nothing
+        float strength = 0.0F;
+    };
+    void lay_grid(const SearchBox& box, double cell_m);
+    void append(const Cell& cell);
+    std::vector<Score> score(const FrameCounts& frame) const;
+    bool is_peak(const std::vector<Score>& scores, const std::array<int, 3>& cell) const;
+    std::size_t index(const std::array<int, 3>& cell) const;
 
     std::array<int, 3> cells_{};
     std::vector<core::Vec3> positions_;

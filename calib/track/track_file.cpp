@@ -27,7 +27,7 @@ Json target_json(const TargetEstimate& target, const TrackSettings& settings) {
     json["probability"] = target.probability;
     json["strength"] = target.state.strength();
     if (target.state.mean.size() > kSeen) {
-        const double sign = settings.free == TrackUnknown::Target ? 1.0 : -1.0;
+        const double sign = settings.moves_sensor() ? -1.0 : 1.0;
         json["velocity_m_per_s"] =
             core::write_value(Vec3(sign * target.state.mean.segment<3>(kSeen)));
     }
@@ -64,7 +64,7 @@ TrackedPosition read_target(const Json& json, const std::string& where) {
 
 Vec3 stated_position_m(const TargetEstimate& target, const TrackSettings& settings) {
     const Vec3 position_m = target.state.position_m();
-    if (settings.free == TrackUnknown::Target) return position_m;
+    if (!settings.moves_sensor()) return position_m;
     return settings.pose.position_m + (*settings.target.position_m - position_m);
 }
 
@@ -86,7 +86,7 @@ Json frame_json(const FrameEstimate& frame, const TrackSettings& settings) {
     for (const TargetEstimate& target : frame.targets) {
         if (target.is_named) json["targets"].push_back(target_json(target, settings));
     }
-    if (frame.pose && settings.free == TrackUnknown::Target && !settings.poses.empty()) {
+    if (frame.pose && !settings.moves_sensor() && !settings.poses.empty()) {
         json["sensor_position_m"] = core::write_value(frame.pose->position_m);
     }
     if (!frame.warnings.empty()) json["warnings"] = frame.warnings;

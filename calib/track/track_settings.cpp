@@ -29,12 +29,12 @@ void validate(const TrackSettings& s, const std::string& where) {
         core::validate(s.poses[i], core::join_key(where, "poses") + "[" + std::to_string(i) + "]");
     }
     if (s.wall) core::validate(*s.wall, core::join_key(where, "wall"));
-    if (s.free == TrackUnknown::SensorPose && !s.target.position_m) {
+    if (s.moves_sensor() && !s.target.position_m) {
         throw core::Error(core::join_key(where, "free"),
                           "is sensor_pose without target.position_m",
                           "must come with the place where the target stands [m]");
     }
-    if (s.free == TrackUnknown::SensorPose && !s.poses.empty()) {
+    if (s.moves_sensor() && !s.poses.empty()) {
         throw core::Error(core::join_key(where, "poses"),
                           "found with free sensor_pose",
                           "must be left out: `pose` says where the sensor's way begins");

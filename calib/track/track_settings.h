@@ -29,6 +29,9 @@ struct TargetSettings {
     TargetKind kind = TargetKind::Retroreflective;
     double radius_m = 0.0;
     std::optional<core::Vec3> position_m;
+
+    /// Whether light goes back to the wall point that it came from, instead of everywhere.
+    bool returns_light() const { return kind == TargetKind::Retroreflective; }
 };
 
 struct MotionSettings {
@@ -84,6 +87,9 @@ struct TrackSettings {
     SearchSettings search;
     int max_targets = 1;
     TrackUnknown free = TrackUnknown::Target;
+
+    /// Whether the sensor moves before a target that stands, instead of the target.
+    bool moves_sensor() const { return free == TrackUnknown::SensorPose; }
 };
 
 template <class Visitor>

@@ -18,7 +18,6 @@ constexpr double kKeptProbability = 0.02;
 constexpr double kBornProbability = 0.05;
 constexpr double kNearestToWall_m = 0.03;
 constexpr double kDirectReturnSigmas = 4.0;
-constexpr double kDeadCounts = 30.0;  // that a zone should have before none of them is suspicious
 
 double updated(double probability, double log_evidence) {
     const double odds = std::exp(std::min(log_evidence, 500.0));
@@ -41,7 +40,7 @@ Tracker::Tracker(const TrackSettings& settings, const TrackSensor& sensor)
       pose_(settings.poses.empty() ? settings.pose : settings.poses.front()),
       background_(
           settings.background, sensor.num_zones(), static_cast<std::size_t>(sensor.axis.num_bins)) {
-    if (settings_.free == TrackUnknown::SensorPose) {
+    if (settings_.moves_sensor()) {
         // The wall's distance is known, so is the target's.
         const double z =
             (sensor_.wall.world_from_wall().inverse() * *settings_.target.position_m).z();
@@ -129,8 +128,7 @@ std::vector<double> Tracker::weights_of(const TrackFrame& frame, FrameEstimate& 
                 weights[i] = 1.0;
             }
         }
-        const bool is_flat = settings_.background.kind == BackgroundKind::Flat;
-        if (counted == 0.0 && (is_flat || awaited > kDeadCounts * dispersion_)) {
+        if (counted == 0.0 && background_.makes_suspicious(awaited, dispersion_)) {
             std::fill_n(weights.begin() + static_cast<std::ptrdiff_t>(z * bins), bins, 0.0);
             warn_once(fmt::format("zone {} counted nothing and is left out", z), estimate);
         }
@@ -307,10 +305,10 @@ FrameEstimate Tracker::step(const TrackFrame& frame) {
     estimate.dt_s = last_time_s_ ? frame.time_s - *last_time_s_ : sensor_.frame_s;
     last_time_s_ = frame.time_s;
     if (frame.pose && sensor_.setup) {
-        if (settings_.free == TrackUnknown::Target) {
-            aim(*frame.pose);
-        } else {
+        if (settings_.moves_sensor()) {
             warn_once("poses of frames are not used where the sensor's pose is free", estimate);
+        } else {
+            aim(*frame.pose);
         }
     }
     predict(estimate.dt_s);

@@ -143,9 +143,9 @@ core::Capture counts_through(const Device& device,
     for (const auto& command : commands) spots.push_back(spot_of(device, command));
     const core::WallScan scan = test_support::confocal_scan(spots);
     calib::FitSettings settings;
-    settings.free.ambient = false;
-    settings.free.objects = {{"target", true, false, false, false, false}};
-    const calib::SceneModel model(hidden, settings, false);
+    settings.free.parameters.clear();
+    settings.free.objects = {{"target", {"translation"}}};
+    const calib::SceneModel model(hidden, settings);
     calib::ForwardSettings forward;
     forward.axis = {2.5, kBin_m, 400};
     forward.sigma_m = kSigma_m;

@@ -53,20 +53,20 @@ TEST(Fit, FindsThePoseOfNoiseFreeData) {
     const auto errors = calib::compare_fit(fit, fit.geometry, truth());
     EXPECT_LT(*errors.position_m, 2e-4);
     EXPECT_LT(*errors.rotation_deg, 0.1);
-    EXPECT_NEAR(fit.ambient.value, 0.5, 5e-3);
+    EXPECT_NEAR(fit.estimates["ambient"].value, 0.5, 5e-3);
 }
 
 TEST(Fit, FindsPoseAndAlbedoOfRadianceWithoutAmbientLight) {
     core::Capture capture = expected_capture(truth(), confocal_grid(8), 1.0, 0.0);
     capture.unit = core::TransientUnit::Radiance;
     calib::FitInput input = fit_input(capture, displaced());
-    input.settings.free.ambient = false;
+    input.settings.free.parameters.clear();
     const calib::FitResult fit = calib::fit_scene(input, {});
     ASSERT_TRUE(fit.converged);
     EXPECT_EQ(fit.residual, "least_squares");
-    EXPECT_EQ(fit.scale.value, 1.0);
+    EXPECT_EQ(fit.estimates["scale"].value, 1.0);
     EXPECT_LT(*calib::compare_fit(fit, fit.geometry, truth()).position_m, 1e-3);
-    EXPECT_GT(fit.objects[0].albedo_sigma, 0.0);
+    EXPECT_GT(fit.objects[0].numbers["albedo"].sigma, 0.0);
 }
 
 // Two rectangles below one node, which is freed by its name.
@@ -129,7 +129,7 @@ TEST(Fit, LeavesOutBinsThatWereNotObserved) {
     const calib::FitResult fit = calib::fit_scene(fit_input(capture, displaced()), {});
     ASSERT_TRUE(fit.converged);
     EXPECT_LT(*calib::compare_fit(fit, fit.geometry, truth()).position_m, 0.001);
-    EXPECT_NEAR(fit.ambient.value, 2.0, 5.0 * fit.ambient.sigma);
+    EXPECT_NEAR(fit.estimates["ambient"].value, 2.0, 5.0 * fit.estimates["ambient"].sigma);
     EXPECT_NEAR(fit.deviance, fit.expected_deviance, 5.0 * fit.expected_deviance_sigma);
     EXPECT_LT(fit.num_observed(), 52U * 45U + 1U);
     capture.observed.reset();
@@ -195,10 +195,10 @@ TEST(Fit, GivesTheSameBitsForAnyNumberOfThreads) {
 TEST(Fit, TimeZeroWithoutPriorIsReportedAsTiedToDepth) {
     const auto capture = counted(expected_capture(truth(), confocal_grid(8), 1e5, 1.0), "Zero");
     calib::FitInput input = fit_input(capture, truth());
-    input.settings.free.time_zero = true;
+    input.settings.free.parameters.insert("time_zero");
     const calib::FitResult free = calib::fit_scene(input, {});
     EXPECT_TRUE(test_support::mentions(free.unidentifiable, "time_zero"));
-    input.settings.free.time_zero_sigma_m = 0.0006;
+    input.settings.free.prior_sigma["time_zero"] = 0.0006;
     const calib::FitResult held = calib::fit_scene(input, {});
     EXPECT_LT(held.objects[0].position_sigma_m.z(), 0.5 * free.objects[0].position_sigma_m.z());
 }
@@ -206,7 +206,7 @@ TEST(Fit, TimeZeroWithoutPriorIsReportedAsTiedToDepth) {
 TEST(Fit, CountsOfUnknownScaleKeepOneAlbedoAndSayIt) {
     const auto capture = expected_capture(truth(), confocal_grid(6), 1e5, 0.1);
     const calib::FitResult fit = calib::fit_scene(fit_input(capture, displaced()), {});
-    EXPECT_EQ(fit.objects[0].albedo, 0.5);
+    EXPECT_EQ(fit.objects[0].numbers["albedo"].value, 0.5);
     EXPECT_TRUE(test_support::mentions(fit.unidentifiable, "scale with target.albedo"));
 }
 
@@ -217,8 +217,8 @@ TEST(Fit, LeastSquaresStatesTheScaleThatItEliminates) {
     const calib::FitResult poisson = calib::fit_scene(input, {});
     input.settings.residual = calib::ResidualKind::LeastSquares;
     const calib::FitResult squares = calib::fit_scene(input, {});
-    EXPECT_GT(squares.scale.sigma, 0.0);
-    EXPECT_NEAR(squares.scale.value / poisson.scale.value, 1.0, 0.02);
+    EXPECT_GT(squares.estimates["scale"].sigma, 0.0);
+    EXPECT_NEAR(squares.estimates["scale"].value / poisson.estimates["scale"].value, 1.0, 0.02);
 }
 
 TEST(Fit, RobustLossRejectsWildWallPoints) {

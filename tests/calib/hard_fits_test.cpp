@@ -220,11 +220,13 @@ TEST(HardFit, AWrongResponseWidthIsNamed) {
         });
         wrong.adapt = [&](calib::FitInput& input) {
             input.settings.response.jitter_fwhm_ps = fwhm_ps;
-            input.settings.free.response_fwhm = true;
+            input.settings.free.parameters.insert("response_fwhm");
         };
         const double mean = mean_square(wrong, [](const calib::FitResult& fit) {
             expect_no_warning(fit);
-            EXPECT_NEAR(fit.response_fwhm_ps.value, 94.0, 4.5 * fit.response_fwhm_ps.sigma);
+            EXPECT_NEAR(fit.estimates["response_fwhm_ps"].value,
+                        94.0,
+                        4.5 * fit.estimates["response_fwhm_ps"].sigma);
         });
         EXPECT_GT(chi_square_p(mean, 18.0), 1e-3) << mean;
     }
@@ -311,7 +313,7 @@ Case overlapping(const std::string& name, int seeds) {
 TEST(HardFit, OverlappingObjectsThatHideOneAnotherAreFound) {
     Case two = overlapping("Overlapping", 2);
     two.adapt = [](calib::FitInput& input) {
-        input.settings.free.objects.push_back({"back", true, true, false, true, false});
+        input.settings.free.objects.push_back({"back", {"pose", "albedo"}});
     };
     double sum = 0.0;
     const double mean = mean_square(two, [&](const calib::FitResult& fit) {
@@ -339,7 +341,7 @@ TEST(HardFit, MovingShadowEdgesCountInFitsAndTheirErrors) {
     for (int seed = 0; seed < one.seeds; ++seed) {
         calib::FitInput input =
             test_support::fit_input(counted(light, one.name + std::to_string(seed)), one.start);
-        input.settings.free.objects = {{"back", true, true, false, true, false}};
+        input.settings.free.objects = {{"back", {"pose", "albedo"}}};
         input.settings.blur_schedule_m = {0.0};
         const calib::FitResult fit = calib::fit_scene(input, {});
         expect_no_warning(fit);

@@ -54,7 +54,7 @@ std::vector<double> true_heights() {
 
 calib::FitInput heights_input(const core::Capture& capture) {
     calib::FitInput input = test_support::fit_input(capture, grid());
-    input.settings.free.objects = {{"target", false, false, false, true, true}};
+    input.settings.free.objects = {{"target", {"albedo", "vertices"}}};
     return input;
 }
 
@@ -96,8 +96,8 @@ TEST(Heights, RankDeficientRowsKeepCostAndGradient) {
     const core::Capture counts = test_support::counted(
         test_support::expected_capture(geometry, scan, 1e5, 0.02), "RankDeficient");
     calib::FitSettings settings;
-    settings.free.objects = {{"target", true, true, false, true, true}};
-    const calib::SceneModel model(geometry, settings, false);
+    settings.free.objects = {{"target", {"pose", "albedo", "vertices"}}};
+    const calib::SceneModel model(geometry, settings);
     calib::ForwardSettings forward;
     forward.axis = test_support::kFitAxis;
     forward.sigma_m = core::sigma_m_from_fwhm_ps(test_support::kFitFwhm_ps);
@@ -125,8 +125,8 @@ TEST(Heights, RankDeficientRowsKeepCostAndGradient) {
         const auto& rows = objective.pair(pair);
         gradient += 2.0 * rows.jacobian.transpose() * rows.residual;
     }
-    const calib::ParameterBlock* block = model.find(calib::ParameterKind::Heights);
-    ASSERT_NE(block, nullptr);
+    const auto blocks = model.find(calib::Owner::Body, 0, calib::Effect::Deforms);
+    ASSERT_EQ(blocks.size(), 1U);
     for (const int vertex : {0, 40, 77}) {
         constexpr double kStep_m = 1e-6;
         double& height = state.bodies.front().heights_m[static_cast<std::size_t>(vertex)];
@@ -138,7 +138,7 @@ TEST(Heights, RankDeficientRowsKeepCostAndGradient) {
         }
         height -= kStep_m;
         const double expected = (ends[1] - ends[0]) / (2.0 * kStep_m);
-        EXPECT_NEAR(gradient[block->first_column + vertex], expected, 1e-4 * std::abs(expected))
+        EXPECT_NEAR(gradient[blocks[0]->first_column + vertex], expected, 1e-4 * std::abs(expected))
             << vertex;
     }
 }

@@ -3,11 +3,11 @@
 // grazing angles, around the tangent point, of aspect 1e6 and next to the wall:
 // tests/renderer/triangle/triangle_histogram_test.cpp.
 #include "renderer/core/random.h"
-#include "renderer/triangle/exact_arcs.h"
 #include "renderer/triangle/triangle_histogram.h"
 #include "tests/hard_cases/cases.h"
 #include "tests/hard_cases/extended_precision.h"
 #include "tests/hard_cases/hard_case.h"
+#include "tests/support/exact_arcs.h"
 #include "tests/support/random_geometry.h"
 #include "tests/support/single_triangle.h"
 #include "tests/support/statistics.h"
@@ -85,7 +85,7 @@ double exact_arcs_of_tiny_triangles() {
         const double reach =
             4.0 * (corners[1] - corners[0]).norm() + 4.0 * (corners[2] - corners[0]).norm();
         const TimeAxis axis{2.0 * corners[0].norm() - reach, reach, 2};
-        const auto bins = renderer::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis);
+        const auto bins = test_support::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis);
         worst.add(truth::relative_error(bins[0] + bins[1], integrate(corners).energy));
     }
     return worst.value();
@@ -135,7 +135,7 @@ double exact_arcs_of_coplanar_triangles() {
         const std::array<Vec3, 3> corners{
             0.5 * along, 0.9 * along + 0.3 * Vec3::UnitY(), 0.7 * along - 0.2 * Vec3::UnitY()};
         for (const double value :
-             renderer::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), {0.0, 0.01, 300})) {
+             test_support::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), {0.0, 0.01, 300})) {
             worst.add(std::abs(value));
         }
     }
@@ -151,7 +151,7 @@ double exact_arcs_of_a_facet_of_kilometres() {
         const TimeAxis axis{0.0, 0.04 * z, 1000};
         double found = 0.0;
         for (const double value :
-             renderer::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis)) {
+             test_support::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis)) {
             found += value;
         }
         const Quad z2 = Quad(z) * Quad(z);

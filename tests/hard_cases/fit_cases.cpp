@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Ill-posed fits. Grazing tilts, nearly symmetric objects, few photons, hidden and missing objects:
 // tests/calib/hard_fits_test.cpp; set-ups that the data cannot determine: calibrate_test.cpp.
-#include "calib/forward/autodiff_reference.h"
 #include "calib/forward/forward_model.h"
 #include "calib/setup/direct_returns.h"
 #include "calib/statistics/uncertainty.h"
 #include "renderer/core/capture/instrument_response.h"
 #include "renderer/core/random.h"
+#include "tests/hard_cases/autodiff_reference.h"
 #include "tests/hard_cases/cases.h"
 #include "tests/hard_cases/extended_precision.h"
 #include "tests/hard_cases/hard_case.h"
@@ -79,8 +79,8 @@ double gradients_of_the_light_of_tiny_and_large_objects() {
     // bins, for each of the pose's six parameters.
     const core::WallScan scan = test_support::confocal_grid(2);
     calib::FitSettings settings;
-    settings.free.ambient = false;
-    settings.free.objects = {{"target", true, true, false, false, false}};
+    settings.free.parameters.clear();
+    settings.free.objects = {{"target", {"pose"}}};
     Worst worst;
     for (const double size : {1e-6, 1e-3, 0.1, 2.0}) {
         renderer::Object object = test_support::parallelogram_object(
@@ -89,7 +89,7 @@ double gradients_of_the_light_of_tiny_and_large_objects() {
         object.world_from_node.translation() = object.mesh.vertices[0];
         renderer::SceneGeometry geometry;
         geometry.objects = {object};
-        const calib::SceneModel model(geometry, settings, false);
+        const calib::SceneModel model(geometry, settings);
         calib::ForwardSettings forward;
         forward.axis = {0.9, 0.0192, 400};
         forward.sigma_m = 0.012;
@@ -102,7 +102,7 @@ double gradients_of_the_light_of_tiny_and_large_objects() {
         for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
             calib::PairModel found;
             light.evaluate(pair, found);
-            const std::vector<double> jets = calib::autodiff_jacobian(model, state, light, pair);
+            const std::vector<double> jets = autodiff_jacobian(model, state, light, pair);
             for (std::size_t c = 0; c < 6; ++c) {
                 double square = 0.0;
                 double error = 0.0;

@@ -35,7 +35,7 @@ inline renderer::Object tilted_rectangle(const std::string& name,
 inline core::WallScan confocal_grid(int n) {
     renderer::SceneDescription description;
     description.scan.sensing_points = {n, n};
-    return renderer::make_scan(description);
+    return renderer::make_scan(description).wall();
 }
 
 inline constexpr core::TimeAxis kFitAxis{0.9, 0.0192, 120};
@@ -47,9 +47,9 @@ inline core::Capture expected_capture(const renderer::SceneGeometry& geometry,
                                       double photons,
                                       double ambient) {
     calib::FitSettings settings;
-    settings.free.ambient = false;
-    settings.free.objects = {{geometry.objects.front().name, true, false, false, false, false}};
-    const calib::SceneModel model(geometry, settings, false);
+    settings.free.parameters.clear();
+    settings.free.objects = {{geometry.objects.front().name, {"translation"}}};
+    const calib::SceneModel model(geometry, settings);
     calib::ForwardSettings forward;
     forward.axis = kFitAxis;
     forward.sigma_m = core::sigma_m_from_fwhm_ps(kFitFwhm_ps);
@@ -94,9 +94,33 @@ inline calib::FitInput fit_input(const core::Capture& capture,
     input.capture = capture;
     input.geometry = geometry;
     input.settings.scene = "test";
-    input.settings.free.objects = {{geometry.objects.front().name, true, true, false, true, false}};
+    input.settings.free.objects = {{geometry.objects.front().name, {"pose", "albedo"}}};
     input.settings.response.jitter_fwhm_ps = kFitFwhm_ps;
     return input;
+}
+
+/// "front" and "back", in one another's shade.
+inline renderer::SceneGeometry two_objects() {
+    renderer::SceneGeometry geometry;
+    geometry.objects = {tilted_rectangle("front", core::Vec3(0.1, 0.0, 0.6), 0.4),
+                        tilted_rectangle("back", core::Vec3(-0.1, 0.1, 0.8), -0.3, 0.8)};
+    return geometry;
+}
+
+/// Every parameter free at once: those of two_objects(), of one point and of the scene. What
+/// deforms is free of the back, what moves of the front.
+inline calib::FitSettings all_free() {
+    calib::FitSettings settings;
+    calib::FreeObject front{"front", {}};
+    calib::FreeObject back{"back", {"albedo"}};
+    for (const calib::Parameter* row : calib::parameters()) {
+        if (row->owner == calib::Owner::Scene) settings.free.parameters.insert(row->name);
+        if (row->owner != calib::Owner::Body) continue;
+        (row->effect == calib::Effect::Deforms ? back : front).parameters.insert(row->name);
+    }
+    settings.free.objects = {front, back};
+    settings.free.point_scatterers = 1;
+    return settings;
 }
 
 /// Whether one of the lines contains a text.

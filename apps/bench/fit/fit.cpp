@@ -252,7 +252,6 @@ struct BenchPart {
 const std::vector<BenchPart>& bench_parts() {
     static const std::vector<BenchPart> kParts{
         {"forward", [](int, FitBench& bench) { bench_forward(bench); }},
-        {"gradients", [](int, FitBench& bench) { bench_gradients(bench); }},
         {"pose", bench_pose},
         {"basin", bench_basin},
         {"search", bench_search},

@@ -62,7 +62,7 @@ HeightErrors fit_heights(int vertices, int fits) {
             counted_capture(setup, light, 0.0, static_cast<std::uint64_t>(fit));
         calib::FitInput input = trial_input(setup, counts, standard_pose());
         input.geometry.objects = {flat};
-        input.settings.free.objects = {{"target", false, false, false, true, true}};
+        input.settings.free.objects = {{"target", {"albedo", "vertices"}}};
         const calib::FittedObject object = calib::fit_scene(input, {}).objects.front();
         for (std::size_t v = 0; v < truth.size(); ++v) {
             const double error = std::abs(object.heights_m[v] - truth[v]);

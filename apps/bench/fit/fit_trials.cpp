@@ -107,8 +107,8 @@ core::Capture expected_light(const renderer::Object& truth) {
     renderer::SceneGeometry geometry;
     geometry.objects = {truth};
     calib::FitSettings settings;
-    settings.free.objects = {{"target", true, false, false, false, false}};
-    const calib::SceneModel model(geometry, settings, false);
+    settings.free.objects = {{"target", {"translation"}}};
+    const calib::SceneModel model(geometry, settings);
     calib::ForwardSettings forward;
     forward.axis = capture.time_axis;
     forward.sigma_m = core::sigma_m_from_fwhm_ps(kTrialFwhm_ps);
@@ -117,8 +117,7 @@ core::Capture expected_light(const renderer::Object& truth) {
     forward.radiance_factor = std::pow(core::kPi, -3.0);
     const core::WallScan& scan = capture.scan.wall();
     calib::ForwardModel light(model, scan, calib::WallMotion(scan), forward);
-    calib::SceneState state = model.start();
-    state.has_ambient = false;
+    const calib::SceneState state = calib::without_added_light(model.start());
     light.refresh(state);
     light.update(state, renderer::Gradients::Without);
 
@@ -158,7 +157,7 @@ calib::FitInput trial_input(const TrialSetup& setup,
     input.geometry.objects = {trial_rectangle(start, 1, 1)};
     calib::FitSettings& settings = input.settings;
     settings.scene = "trial";
-    settings.free.objects = {{"target", true, true, false, true, false}};
+    settings.free.objects = {{"target", {"pose", "albedo"}}};
     settings.response.jitter_fwhm_ps = kTrialFwhm_ps;
     settings.blur_schedule_m = setup.blur_schedule_m;
     settings.start = setup.start;

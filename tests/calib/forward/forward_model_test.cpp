@@ -4,14 +4,16 @@
 
 #include "calib/model/state_vector.h"
 #include "renderer/render.h"
-#include "renderer/triangle/exact_arcs.h"
 #include "tests/support/error_message.h"
+#include "tests/support/exact_arcs.h"
 #include "tests/support/fit_examples.h"
 #include "tests/support/surface_models.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <numeric>
 
 namespace {
 
@@ -25,38 +27,20 @@ using renderer::Gradients;
 
 constexpr double kSigma_m = 0.012;
 
-// Everything free at once, two objects in one another's shade, one point.
-calib::FitSettings all_free() {
-    calib::FitSettings settings;
-    settings.free.objects = {{"front", true, true, true, true, false},
-                             {"back", false, false, false, true, true}};
-    settings.free.point_scatterers = 1;
-    settings.free.time_zero = true;
-    settings.free.response_fwhm = true;
-    settings.free.wall_bow = true;
-    settings.free.wall_scale = true;
-    return settings;
-}
-
-renderer::SceneGeometry two_objects() {
-    renderer::SceneGeometry geometry;
-    geometry.objects = {test_support::tilted_rectangle("front", Vec3(0.1, 0.0, 0.6), 0.4),
-                        test_support::tilted_rectangle("back", Vec3(-0.1, 0.1, 0.8), -0.3, 0.8)};
-    return geometry;
-}
-
 SceneState general_state(const SceneModel& model) {
     SceneState state = model.start();
     state.bodies[0].rotation = Eigen::AngleAxisd(0.2, Vec3(0.0, 0.6, 0.8));
     state.bodies[0].log_size = 0.1;
     state.bodies[1].heights_m = {0.01, -0.02, 0.0, 0.015};
-    state.points[0] = {Vec3(0.1, 0.2, 0.5), -4.0};
-    state.time_zero_m = 0.003;
-    state.log_ambient = -8.0;
-    state.log_width = 0.1;
-    state.bow_m = 0.01;
-    state.log_wall_scale = 0.02;
-    state.log_scale = 0.5;
+    state.points[0] = {Vec3(0.1, 0.2, 0.5), {{"albedo", -4.0}}};
+    for (const auto& [name, number] : calib::Numbers{{"time_zero", 0.003},
+                                                     {"ambient", -8.0},
+                                                     {"response_fwhm", 0.1},
+                                                     {"wall.bow", 0.01},
+                                                     {"wall.scale", 0.02},
+                                                     {"scale", 0.5}}) {
+        state.numbers[name] = number;
+    }
     return state;
 }
 
@@ -76,7 +60,7 @@ double norm(const std::vector<double>& values) {
 }
 
 void expect_gradients_match_differences(const core::WallScan& scan, ForwardSettings settings) {
-    const SceneModel model(two_objects(), all_free(), true);
+    const SceneModel model(test_support::two_objects(), test_support::all_free());
     const SceneState state = general_state(model);
     ForwardModel light(model, scan, calib::WallMotion(scan), std::move(settings));
     light.refresh(state);
@@ -126,59 +110,95 @@ TEST(ForwardModel, GradientsMatchFiniteDifferencesThroughAMeasuredResponse) {
     expect_gradients_match_differences(scan, settings);
 }
 
-TEST(ForwardModel, AgreesWithExactArcs) {
-    const auto object = test_support::tilted_rectangle("target", Vec3(0.0, 0.0, 0.8), 0.44);
+// One tilted rectangle whose path lengths are all longer by `offset_m`.
+struct Rectangle {
     renderer::SceneGeometry geometry;
-    geometry.objects = {object};
-    calib::FitSettings free;
-    free.free.objects = {{"target", true, false, false, false, false}};
-    free.free.ambient = false;
-    const SceneModel model(geometry, free, false);
-    const core::WallScan scan = test_support::confocal_grid(3);
+    core::WallScan scan = test_support::confocal_grid(3);
     ForwardSettings settings = forward_settings(scan.num_pairs());
-    settings.response_share = 1.0;
-    settings.offset_m.assign(scan.num_pairs(), 0.0);
-    settings.tolerance = 5e-3;
-    ForwardModel light(model, scan, calib::WallMotion(scan), settings);
-    light.refresh(model.start());
-    light.update(model.start(), Gradients::Without);
+    std::unique_ptr<SceneModel> model;
+    std::unique_ptr<ForwardModel> light;
 
-    constexpr int kFine = 32;
-    core::TimeAxis fine = settings.axis;
-    fine.bin_width_m /= kFine;
-    fine.num_bins *= kFine;
-    const auto filter = core::sample_response(core::GaussianResponse{kSigma_m}, fine.bin_width_m);
-    for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
+    explicit Rectangle(double tolerance, double offset_m = 0.0) {
+        geometry.objects = {test_support::tilted_rectangle("target", Vec3(0.0, 0.0, 0.8), 0.44)};
+        calib::FitSettings free;
+        free.free.objects = {{"target", {"translation"}}};
+        free.free.parameters.clear();
+        model = std::make_unique<SceneModel>(geometry, free);
+        settings.response_share = 1.0;
+        settings.offset_m.assign(scan.num_pairs(), offset_m);
+        settings.tolerance = tolerance;
+        light = std::make_unique<ForwardModel>(*model, scan, calib::WallMotion(scan), settings);
+        light->refresh(model->start());
+        light->update(model->start(), Gradients::Without);
+    }
+
+    std::vector<double> expected(std::size_t pair) const {
+        PairModel result;
+        light->evaluate(pair, result);
+        return result.mean;
+    }
+
+    // By exact arcs, filtered on fine bins.
+    std::vector<double> exact(std::size_t pair) const {
+        constexpr int kFine = 32;
+        core::TimeAxis fine = settings.axis;
+        fine.bin_width_m /= kFine;
+        fine.num_bins *= kFine;
         std::vector<double> sharp(static_cast<std::size_t>(fine.num_bins));
-        for (const auto& triangle : object.mesh.triangles) {
-            const auto part = renderer::confocal_arcs({object.mesh.vertices[triangle[0]],
-                                                       object.mesh.vertices[triangle[1]],
-                                                       object.mesh.vertices[triangle[2]]},
-                                                      scan.sensing.positions[pair],
-                                                      scan.sensing.normals[pair],
-                                                      fine);
-            for (std::size_t i = 0; i < sharp.size(); ++i) sharp[i] += 0.5 * part[i];
+        const core::TriangleMesh& mesh = geometry.objects[0].mesh;
+        for (const auto& [a, b, c] : mesh.triangles) {
+            const auto part =
+                test_support::confocal_arcs({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]},
+                                            scan.sensing.positions[pair],
+                                            scan.sensing.normals[pair],
+                                            fine);
+            for (std::size_t i = 0; i < sharp.size(); ++i) sharp[i] += 0.5 * part[i];  // albedo
         }
         std::vector<double> smooth(sharp.size());
-        core::apply_filter<double, double>(filter, sharp, smooth);
-        std::vector<double> difference(static_cast<std::size_t>(settings.axis.num_bins));
-        for (std::size_t i = 0; i < smooth.size(); ++i) difference[i / kFine] += smooth[i];
-        const double size = norm(difference);
-        PairModel expected;
-        light.evaluate(pair, expected);
-        for (std::size_t b = 0; b < difference.size(); ++b) {
-            difference[b] -= expected.mean[b];
+        core::apply_filter<double, double>(
+            core::sample_response(core::GaussianResponse{kSigma_m}, fine.bin_width_m),
+            sharp,
+            smooth);
+        std::vector<double> result(static_cast<std::size_t>(settings.axis.num_bins));
+        for (std::size_t i = 0; i < smooth.size(); ++i) result[i / kFine] += smooth[i];
+        return result;
+    }
+};
+
+double sum(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+TEST(ForwardModel, AgreesWithExactArcsInShapeAndEnergy) {
+    for (const auto& [tolerance, most_shape, most_energy] :
+         {std::array{2e-2, 1.5e-2, 1e-4}, std::array{1e-3, 1.5e-3, 1e-5}}) {
+        const Rectangle rectangle(tolerance);
+        for (std::size_t pair = 0; pair < rectangle.scan.num_pairs(); ++pair) {
+            const std::vector<double> exact = rectangle.exact(pair);
+            std::vector<double> difference = rectangle.expected(pair);
+            for (std::size_t b = 0; b < exact.size(); ++b) difference[b] -= exact[b];
+            EXPECT_LT(norm(difference), most_shape * norm(exact));
+            EXPECT_LT(std::abs(sum(difference)), most_energy * sum(exact));
         }
-        EXPECT_LT(norm(difference), 1e-2 * size);
+    }
+}
+
+TEST(ForwardModel, KeepsItsEnergyWhenLightMovesByPartsOfABin) {
+    const Rectangle still(5e-3);
+    for (const double part : {0.13, 0.5, 0.77}) {
+        const Rectangle moved(5e-3, part * still.settings.axis.bin_width_m);
+        for (std::size_t pair = 0; pair < still.scan.num_pairs(); ++pair) {
+            EXPECT_NEAR(sum(moved.expected(pair)) / sum(still.expected(pair)), 1.0, 1e-10);
+        }
     }
 }
 
 // Relative L2 over a confocal scan.
 double difference_from_renderer(const renderer::SceneGeometry& geometry, double spot_m2) {
     calib::FitSettings free;
-    free.free.objects = {{"front", true, false, false, false, false}};
-    free.free.ambient = false;
-    const SceneModel model(geometry, free, false);
+    free.free.objects = {{"front", {"translation"}}};
+    free.free.parameters.clear();
+    const SceneModel model(geometry, free);
     const core::WallScan scan = test_support::confocal_grid(8);
     ForwardSettings settings = forward_settings(scan.num_pairs());
     settings.sigma_m = 0.0;
@@ -212,7 +232,7 @@ double difference_from_renderer(const renderer::SceneGeometry& geometry, double 
 
 // Shadow edges are known to quarters of elements.
 TEST(ForwardModel, AgreesWithTheRendererBehindAnOccluder) {
-    EXPECT_LT(difference_from_renderer(two_objects(), 1e-4), 0.03);
+    EXPECT_LT(difference_from_renderer(test_support::two_objects(), 1e-4), 0.03);
 }
 
 TEST(ForwardModel, AgreesWithTheRendererOrRefusesForEverySurfaceModel) {
@@ -220,7 +240,7 @@ TEST(ForwardModel, AgreesWithTheRendererOrRefusesForEverySurfaceModel) {
         for (const renderer::Material& material :
              test_support::materials_of_all_models(albedo, 0.5)) {
             SCOPED_TRACE(material.name);
-            renderer::SceneGeometry geometry = two_objects();
+            renderer::SceneGeometry geometry = test_support::two_objects();
             geometry.objects.front().material = material;
             if (renderer::traits_of(material.model).can_be_fitted()) {
                 EXPECT_LT(difference_from_renderer(geometry, 3e-4), 0.03);

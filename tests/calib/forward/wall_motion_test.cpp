@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "calib/forward/wall_motion.h"
+#include "calib/model/wall_motion.h"
 
 #include "tests/support/test_scenes.h"
 
@@ -27,8 +27,7 @@ core::WallScan stepped_scan() {
 
 calib::SceneState bowed_state() {
     calib::SceneState state;
-    state.bow_m = 0.06;
-    state.log_wall_scale = 0.1;
+    state.numbers = {{"wall.bow", 0.06}, {"wall.scale", 0.1}};
     return state;
 }
 

@@ -37,10 +37,7 @@ void run(const char* scene_path) {
     for (renderer::Object& object : input.geometry.objects) {
         for (core::Vec3& vertex : object.mesh.vertices) vertex.z() += 0.03;
     }
-    calib::FreeObject free;
-    free.name = truth.objects.front().name;
-    free.translation = true;
-    input.settings.free.objects = {free};
+    input.settings.free.objects = {{truth.objects.front().name, {"translation"}}};
     const calib::FitResult fit = calib::fit_scene(input, silent);
     const calib::FitErrors errors = calib::compare_fit(fit, fit.geometry, truth);
     std::printf("fit: position off by %.2f mm\n", 1e3 * errors.position_m.value_or(0));

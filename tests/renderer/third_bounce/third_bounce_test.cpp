@@ -4,9 +4,9 @@
 
 #include "renderer/core/parallel.h"
 #include "renderer/core/random.h"
-#include "renderer/triangle/exact_arcs.h"
 #include "tests/renderer/third_bounce/third_bounce_fixture.h"
 #include "tests/support/error_message.h"
+#include "tests/support/exact_arcs.h"
 #include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>
@@ -164,7 +164,8 @@ TEST_P(ThirdBounceOfHardFacets, MeetsItsTargetAgainstExactArcs) {
     const core::WallScan scan = test_support::confocal_scan({Vec3::Zero()});
     const renderer::Scene scene = scene_of(std::move(geometry), scan);
     std::vector<float> expected;
-    for (const double value : renderer::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis)) {
+    for (const double value :
+         test_support::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis)) {
         expected.push_back(
             static_cast<float>(value * kWallAlbedo * kWallAlbedo / std::pow(core::kPi, 3)));
     }

@@ -2,8 +2,8 @@
 // The closed form for triangles over which lengths bend: against sampling, exact arcs and the laws
 // it must obey.
 #include "renderer/core/random.h"
-#include "renderer/triangle/exact_arcs.h"
 #include "renderer/triangle/triangle_histogram.h"
+#include "tests/support/exact_arcs.h"
 #include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>
@@ -211,7 +211,7 @@ TEST(BentTriangle, ErrorAgainstExactArcsFollowsTheSizeRule) {
     const std::array<Vec3, 3> corners{
         Vec3(-0.2, -0.15, 0.7), Vec3(0.2, -0.1, 0.78), Vec3(-0.05, 0.22, 0.85)};
     const TimeAxis axis{1.2, 0.0096, 80};
-    const auto arcs = renderer::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis);
+    const auto arcs = test_support::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis);
     for (const int steps : {2, 4, 8}) {
         const Vec3 e1 = (corners[1] - corners[0]) / steps;
         const Vec3 e2 = (corners[2] - corners[0]) / steps;

@@ -4,7 +4,7 @@
 
 #include "renderer/core/random.h"
 #include "renderer/core/sampling.h"
-#include "renderer/triangle/exact_arcs.h"
+#include "tests/support/exact_arcs.h"
 #include "tests/support/single_triangle.h"
 #include "tests/support/statistics.h"
 
@@ -246,21 +246,21 @@ TEST(ExactArcs, MatchesQuadrature) {
         const double fine = centroid_rule(corners, normal, 400);
         const double expected = area_vector.norm() * (4.0 * fine - coarse) / 3.0;
         const auto arcs =
-            renderer::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), {0.5, 0.02, 100});
+            test_support::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), {0.5, 0.02, 100});
         EXPECT_NEAR(test_support::sum_of(arcs) / expected, 1.0, 1e-9);
     }
 }
 
 TEST(ExactArcs, MatchTheKernelOfManyPieces) {
     const TimeAxis axis{1.2, 0.0096, 80};
-    const auto arcs = renderer::confocal_arcs(kTriangle, Vec3::Zero(), Vec3::UnitZ(), axis);
+    const auto arcs = test_support::confocal_arcs(kTriangle, Vec3::Zero(), Vec3::UnitZ(), axis);
     EXPECT_LT(relative_l2(pieces_of(kTriangle, Vec3::UnitZ(), axis, 256), arcs), 1e-5);
 }
 
 // Relative error 0.1 kappa, kappa = h^2/(8 r w_r), w_r half a bin in range.
 TEST(TriangleHistogram, ErrorFollowsTheSizeRule) {
     const TimeAxis axis{1.2, 0.0096, 80};
-    const auto arcs = renderer::confocal_arcs(kTriangle, Vec3::Zero(), Vec3::UnitZ(), axis);
+    const auto arcs = test_support::confocal_arcs(kTriangle, Vec3::Zero(), Vec3::UnitZ(), axis);
     for (const int steps : {4, 8, 16, 32}) {
         const double edge = (kTriangle[1] - kTriangle[0]).norm() / steps;
         const double kappa = edge * edge / (8.0 * 0.75 * axis.bin_width_m / 2.0);
@@ -283,8 +283,8 @@ std::vector<double> blurred(const std::vector<double>& histogram, double sigma_b
 TEST(TriangleHistogram, BehindADetectorOf94PicosecondsTheErrorIsThatOfTheDesign) {
     const TimeAxis axis{1.2, 0.0096, 80};
     const double sigma_bins = core::opl_from_seconds(94e-12) / 2.3548 / axis.bin_width_m;
-    const auto arcs =
-        blurred(renderer::confocal_arcs(kTriangle, Vec3::Zero(), Vec3::UnitZ(), axis), sigma_bins);
+    const auto arcs = blurred(
+        test_support::confocal_arcs(kTriangle, Vec3::Zero(), Vec3::UnitZ(), axis), sigma_bins);
     const auto error = [&](int steps) {
         return relative_l2(blurred(pieces_of(kTriangle, Vec3::UnitZ(), axis, steps), sigma_bins),
                            arcs);
@@ -296,7 +296,7 @@ TEST(TriangleHistogram, BehindADetectorOf94PicosecondsTheErrorIsThatOfTheDesign)
 TEST(TriangleHistogram, SubBinShiftsChangeTheEnergyByLessThanOneIn1e5) {
     for (const double shift : {0.0, 0.1, 0.37, 0.5, 0.93}) {
         const TimeAxis axis{1.2 - 0.0096 * shift, 0.0096, 82};
-        const auto arcs = renderer::confocal_arcs(kTriangle, Vec3::Zero(), Vec3::UnitZ(), axis);
+        const auto arcs = test_support::confocal_arcs(kTriangle, Vec3::Zero(), Vec3::UnitZ(), axis);
         const double energy = test_support::sum_of(pieces_of(kTriangle, Vec3::UnitZ(), axis, 8));
         EXPECT_NEAR(energy / test_support::sum_of(arcs), 1.0, 1e-5) << shift;
     }
@@ -315,7 +315,7 @@ class HardFacets : public testing::TestWithParam<HardCase> {};
 
 TEST_P(HardFacets, MatchTheExactArcs) {
     const auto& [name, corners, axis, steps, allowed] = GetParam();
-    const auto arcs = renderer::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis);
+    const auto arcs = test_support::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis);
     const auto pieces = pieces_of(corners, Vec3::UnitZ(), axis, steps);
     EXPECT_LT(relative_l2(pieces, arcs), allowed);
     EXPECT_GT(test_support::sum_of(arcs), 0.0);

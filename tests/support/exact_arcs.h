@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-namespace renderer {
+namespace test_support {
 
 /// The confocal third bounce of one flat triangle as an integral over circular arcs: the reference
 /// that approximations are measured against.
@@ -24,4 +24,4 @@ std::vector<double> confocal_arcs(const std::array<core::Vec3, 3>& corners,
                                   const core::Vec3& wall_normal,
                                   const core::TimeAxis& axis);
 
-}  // namespace renderer
+}  // namespace test_support

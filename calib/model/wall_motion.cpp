@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "calib/forward/wall_motion.h"
+#include "calib/model/wall_motion.h"
+
+#include "calib/model/parameter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,24 +25,25 @@ WallMotion::WallMotion(const core::WallScan& scan) {
 
 std::vector<MovedWallPoint> WallMotion::moved(const core::WallPoints& points,
                                               const SceneState& state) const {
-    const double scale = std::exp(state.log_wall_scale);
+    std::vector<std::pair<const Parameter*, double>> rows;
+    for (const Parameter* row : parameters()) {
+        if (row->effect == Effect::MovesWall) rows.emplace_back(row, row->numbers(state)[0]);
+    }
     std::vector<MovedWallPoint> result;
     result.reserve(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const Vec3 p = points.positions[i] - center_;
-        const double rise = 1.0 - p.squaredNorm() / squared_radius_m2_;
+        const WallPlace place{
+            points.positions[i] - center_, points.normals[i], normal_, squared_radius_m2_};
         MovedWallPoint& target = result.emplace_back();
-        target.position = center_ + scale * p + state.bow_m * rise * normal_;
-        target.position_gradient = {rise * normal_, scale * p};
-        // The surface z = bow rise(p) has the normal n - grad z.
-        const Vec3 across = p - p.dot(normal_) * normal_;
-        const Vec3 per_bow = 2.0 / (squared_radius_m2_ * scale) * across;
-        const Vec3 tilted = points.normals[i] + state.bow_m * per_bow;
-        target.normal = tilted.normalized();
-        const auto gradient = [&](const Vec3& change) {
-            return Vec3((change - target.normal.dot(change) * target.normal) / tilted.norm());
-        };
-        target.normal_gradient = {gradient(per_bow), gradient(-state.bow_m * per_bow)};
+        target.position = center_ + place.from_center_m;
+        target.normal = place.start_normal;
+        for (const auto& [row, number] : rows) row->move_wall(number, place, target);
+        const double length = target.normal.norm();
+        target.normal.normalize();
+        for (WallGradient& gradient : target.gradients) {
+            const Vec3& change = gradient.normal;
+            gradient.normal = (change - target.normal.dot(change) * target.normal) / length;
+        }
     }
     return result;
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/triangle/exact_arcs.h"
+#include "tests/support/exact_arcs.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-namespace renderer {
+namespace test_support {
 namespace {
 
 using core::kPi;
@@ -172,4 +172,4 @@ std::vector<double> confocal_arcs(const std::array<Vec3, 3>& corners,
     return result;
 }
 
-}  // namespace renderer
+}  // namespace test_support

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "calib/forward/autodiff_reference.h"
+#include "tests/hard_cases/autodiff_reference.h"
 
 #include "renderer/triangle/triangle_splines.h"
 
 #include <ceres/jet.h>
 
-namespace calib {
+namespace hard_cases {
 namespace {
 
 using core::Vec3;
@@ -50,16 +50,16 @@ std::array<Jet, 3> knots_of(const std::array<Jet, 6>& v) {
 
 }  // namespace
 
-std::vector<double> autodiff_jacobian(const SceneModel& model,
-                                      const SceneState& state,
-                                      const ForwardModel& light,
+std::vector<double> autodiff_jacobian(const calib::SceneModel& model,
+                                      const calib::SceneState& state,
+                                      const calib::ForwardModel& light,
                                       std::size_t pair) {
     const core::WallScan& scan = light.scan();
     const core::TimeAxis& axis = light.settings().axis;
     const double sigma_m = light.settings().sigma_m;
     const auto bins = static_cast<std::size_t>(axis.num_bins);
     std::vector<double> gradients(bins * 6, 0.0);
-    for (const ModelElement& element : light.elements()) {
+    for (const calib::ModelElement& element : light.elements()) {
         const auto start = model.motion(state, element.facet).corners;
         std::array<JetVec3, 3> corners;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -96,4 +96,4 @@ std::vector<double> autodiff_jacobian(const SceneModel& model,
     return gradients;
 }
 
-}  // namespace calib
+}  // namespace hard_cases

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace calib {
+namespace hard_cases {
 
 /// Jacobian of the confocal model of one body by automatic differentiation throughout, geometry and
 /// histogram: a reference for the analytic gradients of forward_model.h, many times slower.
@@ -15,9 +15,9 @@ namespace calib {
 /// pair      of its scan
 /// returns   [bin][6] derivatives by translation and by rotation about the world's axes, of a model
 ///           in which nothing is hidden and albedo and constants are 1
-std::vector<double> autodiff_jacobian(const SceneModel& model,
-                                      const SceneState& state,
-                                      const ForwardModel& light,
+std::vector<double> autodiff_jacobian(const calib::SceneModel& model,
+                                      const calib::SceneState& state,
+                                      const calib::ForwardModel& light,
                                       std::size_t pair);
 
-}  // namespace calib
+}  // namespace hard_cases

@@ -1,24 +1,35 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "calib/model/scene_model.h"
+#include "calib/model/scene_state.h"
 #include "renderer/core/capture/capture.h"
 
-#include <array>
 #include <vector>
 
 namespace calib {
 
-/// A wall point after bow and scale, and how it moves with them.
+/// How a wall point moves with one parameter.
+struct WallGradient {
+    core::Vec3 position;
+    core::Vec3 normal;
+};
+
+/// A wall point where a state puts it.
 struct MovedWallPoint {
     core::Vec3 position;
     core::Vec3 normal;
-    std::array<core::Vec3, 2> position_gradient;  ///< by bow and by log scale
-    std::array<core::Vec3, 2> normal_gradient;
+    std::vector<WallGradient> gradients;  ///< by the rows that move the wall, in their order
 };
 
-/// The wall as a paraboloid: points grow by `scale` about their centre and rise along the mean
-/// normal by bow (1 - |p|^2 / R^2), R the distance of the farthest point.
+/// Where a point stands on the wall before it is moved.
+struct WallPlace {
+    core::Vec3 from_center_m;
+    core::Vec3 start_normal;
+    core::Vec3 wall_normal;          ///< mean of all points'
+    double squared_radius_m2 = 0.0;  ///< of the farthest point from the centre
+};
+
+/// The wall as its parameters bend it: each moves all points, and tilts their normals, in turn.
 class WallMotion {
  public:
     explicit WallMotion(const core::WallScan& scan);
