@@ -233,16 +233,4 @@ TEST_F(CommandLine, ConversionsComeBackTheSame) {
         "convert " + file("a.h5") + " " + file("g.h5") + " --gate-m 9 1", "gate", file("g.h5"));
 }
 
-TEST_F(CommandLine, DemoMakesASelfContainedReport) {
-#ifdef __SANITIZE_ADDRESS__
-    GTEST_SKIP() << "takes many minutes; other tests here call each of its commands";
-#endif
-    const Outcome outcome = run("demo -o " + file("demo"));
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
-    const std::string page = file_bytes(file("demo/report.html"));
-    EXPECT_NE(page.find("data:image/png;base64,"), std::string::npos);
-    EXPECT_EQ(page.find("src=\"http"), std::string::npos);
-    EXPECT_NE(outcome.out.find("wrote " + file("demo/report.html")), std::string::npos);
-}
-
 }  // namespace
