@@ -94,7 +94,7 @@ std::optional<FalloffChoice> choose_falloff(const MethodInput& input,
                          "falloff: taken for diffuse, which only many counts tell"};
     std::vector<Falloff> others{Falloff::Retro};
     if (is_smeared) others.push_back(Falloff::Facing);
-    const auto misfit_of = [&, tried = settings](Falloff falloff) mutable {
+    auto misfit_of = [&, tried = settings](Falloff falloff) mutable {
         tried.falloff = falloff;
         return trial_misfit(input, tried);
     };
