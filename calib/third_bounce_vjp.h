@@ -38,6 +38,8 @@ void for_each_field(ThirdBounceVjpSettings& settings, Visitor&& visit) {
 /// bound them, so that gradients count how shadows move. They are those of the histograms returned,
 /// to rounding. The histograms are exact up to the settings' tolerance, and the gradients, as
 /// derivatives of them, up to several times that.
+/// Histograms jump by part of their own error where a corner of one shadow moves over the edge of
+/// another, so that only differences over short steps, about 1e-7 m, agree with gradients.
 class ThirdBounceVjp {
  public:
     /// Computes the histograms.

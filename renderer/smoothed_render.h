@@ -10,6 +10,10 @@ namespace renderer {
 /// varies slowly, such as bounces from order 4 on: a few samples per pair then suffice. Orders 1
 /// and 2 are not averaged.
 ///
+/// Two independent halves of the samples tell what noise is left and what averages blur. The widths
+/// with the least error are taken, and both parts count in the error that is reported. Points in a
+/// list are averaged over bins alone.
+///
 /// task   of a scan, with a target_error; neither variances nor bounce orders are asked for
 RenderResult render_smoothed(const RenderTask& task, const PassWork& work);
 

@@ -16,6 +16,7 @@ namespace calib {
 ///
 /// An element's visible part is what is left of it once the shadows that all other facets cast from
 /// both wall points are cut off, each along straight lines.
+/// Nothing is kept between the histograms and the way back: pairs are cut again, in parallel.
 class PairEvaluator {
  public:
     /// scene   must outlive this

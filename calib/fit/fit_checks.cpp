@@ -10,6 +10,22 @@
 #include <algorithm>
 #include <cmath>
 
+// What a fit says of itself where its reported errors are not the whole truth.
+//
+// * A start behind the wall, or without light on the time axis: refused, with the range of lengths.
+// * Light of the model that leaves the data, or data that hold none: not converged, and why.
+// * Light beyond either end of the axis: fitted where it is. Blurred stages leave out what the cut
+//   spoils.
+// * Nearly symmetric objects: the better of the poses; a warning within a deviance of 9.
+// * Fewer than 50 photons per parameter: bodies are tried turned by quarters and halves, and errors
+//   come from refits to simulated counts.
+// * A wrong response width, time zero, bow or scale: score tests, of what one Newton step would
+//   change, beyond 5 standard deviations.
+// * Wall points far off: named; `loss: huber` or `cauchy` gives them little weight.
+// * A model that does not explain the data: deviance beyond its expectation; of least squares a
+//   residual that is alike from bin to bin.
+// * A free time zero without a prior: unidentifiable beside depth.
+
 namespace calib {
 namespace {
 

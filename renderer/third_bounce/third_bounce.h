@@ -38,6 +38,9 @@ struct ThirdBounce {
 /// progress   asked now and then whether to stop; the remaining pairs are then integrated at the
 ///            coarsest level, so that every pair has a result
 /// limits     of elements; surfaces are cut and integrated in batches, which bounds the memory
+///            to about 0.5 kB for each element of a batch: a million, or as many as the scene has
+///            facets. A cut may have 64 million. Batches are added in single precision, and shadow
+///            edges at their borders are found from fewer neighbours
 /// returns    the radiance of order 3 that comes from surfaces with is_integrable() materials
 /// throws     core::Failure when memory does not suffice
 /// source     design by the authors; kernel in triangle_histogram.cpp, size rule in
