@@ -16,8 +16,8 @@ namespace {
 
 using core::Vec3;
 
-constexpr int kSize = 9;
-enum Parameter { kDistance, kTiltX, kTiltY, kSpin, kFootX, kFootY, kZero, kGainX, kGainY };
+constexpr int kNumUnknowns = 9;
+enum Unknown { kDistance, kTiltX, kTiltY, kSpin, kFootX, kFootY, kZero, kGainX, kGainY };
 
 // A calibration whose distance or gain is known no better than this is no calibration.
 constexpr double kWorstRelativeDistance = 0.01;
@@ -119,7 +119,7 @@ std::vector<int> held_parameters(const SetupObservations& o) {
 void add_costs(const SetupObservations& o, double* p, ceres::Problem& problem) {
     const auto add = [&]<class Cost>(const Cost& cost) {
         problem.AddResidualBlock(
-            new ceres::AutoDiffCostFunction<Cost, Cost::kResiduals, kSize>(new Cost(cost)),
+            new ceres::AutoDiffCostFunction<Cost, Cost::kResiduals, kNumUnknowns>(new Cost(cost)),
             nullptr,
             p);
     };
@@ -217,9 +217,9 @@ template <class Function>
 double propagated(const Function& function,
                   const SetupGeometry& setup,
                   const std::vector<int>& free) {
-    using Jet = ceres::Jet<double, kSize>;
-    std::array<Jet, kSize> p;
-    for (int i = 0; i < kSize; ++i) {
+    using Jet = ceres::Jet<double, kNumUnknowns>;
+    std::array<Jet, kNumUnknowns> p;
+    for (int i = 0; i < kNumUnknowns; ++i) {
         p[static_cast<std::size_t>(i)] = Jet(setup.values[static_cast<std::size_t>(i)], i);
     }
     const Jet value = function(p.data());
@@ -269,7 +269,7 @@ SetupGeometry solve_setup(const SetupObservations& o) {
     const std::vector<int> held = held_parameters(o);
     std::vector<int> free;
     std::vector<std::string> names;
-    for (int i = 0; i < kSize; ++i) {
+    for (int i = 0; i < kNumUnknowns; ++i) {
         if (std::find(held.begin(), held.end(), i) != held.end()) continue;
         free.push_back(i);
         names.push_back(kSetupNames[static_cast<std::size_t>(i)]);
@@ -281,7 +281,7 @@ SetupGeometry solve_setup(const SetupObservations& o) {
         ceres::Problem problem;
         add_costs(o, p.data(), problem);
         if (!held.empty()) {
-            problem.SetManifold(p.data(), new ceres::SubsetManifold(kSize, held));
+            problem.SetManifold(p.data(), new ceres::SubsetManifold(kNumUnknowns, held));
         }
         problem.SetParameterLowerBound(p.data(), kDistance, 0.01);
         problem.SetParameterLowerBound(p.data(), kGainX, 1e-6);

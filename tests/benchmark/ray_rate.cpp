@@ -249,9 +249,10 @@ int main(int argc, char** argv) {
         replay_seconds.push_back(replay(recording));
         if (!is_integrated) continue;
         repacked_seconds.push_back(replay(repacked));
-        tracing_seconds.push_back(renderer::integrate_third_bounce(
-                                      scene, scan, description.time_axis, description.render, {})
-                                      .tracing_seconds);
+        tracing_seconds.push_back(
+            renderer::integrate_third_bounce(
+                scene, scan.wall(), description.time_axis, description.render, {})
+                .tracing_seconds);
     }
     const double rays = static_cast<double>(recording.num_rays);
     fmt::print("{} facets, {:.2f} M rays\n", scene.facets().size(), rays * 1e-6);

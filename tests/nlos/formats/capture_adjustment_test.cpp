@@ -99,7 +99,7 @@ TEST(CaptureAdjustment, FlipsMoveHistogramsToTheOtherSide) {
     const Capture in_x = adjusted(capture, settings);
     EXPECT_EQ(histogram_of(in_x.transient, 0), histogram_of(capture.transient, 4));
     EXPECT_EQ(histogram_of(in_x.transient, 3), histogram_of(capture.transient, 3));
-    EXPECT_EQ(in_x.scan.sensing.positions, capture.scan.wall().sensing.positions);
+    EXPECT_EQ(in_x.scan.wall().sensing.positions, capture.scan.wall().sensing.positions);
     settings.flip_x = false;
     settings.flip_y = true;
     const Capture in_y = adjusted(capture, settings);

@@ -227,7 +227,7 @@ TEST(CaptureConversion, OldHdf5FilesAreRead) {
     write_old_hdf5(folder.file("old.h5"), capture);
     const Capture read = read_capture(folder.file("old.h5"));
     EXPECT_TRUE(std::ranges::equal(read.transient.values(), capture.transient.values()));
-    EXPECT_EQ(read.scene_info["seed"], 7);
+    EXPECT_EQ((*read.scene_info)["seed"], 7);
 }
 
 TEST(CaptureConversion, ExrOfACameraHasOneChannelPerBinFromTheTopLeft) {
