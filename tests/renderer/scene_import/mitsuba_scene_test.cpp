@@ -239,7 +239,7 @@ TEST(MitsubaScene, ScenesWithoutAScanAreRefused) {
     EXPECT_ERROR_WITH(import_xml({{"@@type", "hair"}}), "has no hidden objects");
     EXPECT_ERROR_WITH(import_xml({{"@@type", "obj"},
                                   {"@@shape", R"(<string name="filename" value="gone.obj"/>)"}}),
-                      "gone.obj: does not exist");
+                      "gone.obj: cannot be opened");
     EXPECT_ERROR_WITH(
         import_xml({{"@@film", R"(<integer name="temporal_bins" value="2"/>)"},
                     {"@@wall", R"(<transform name="to_world"><scale x="0"/></transform>)"}}),
