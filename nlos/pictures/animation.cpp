@@ -179,12 +179,12 @@ std::vector<ImagePanel> sequence_panels(const core::Capture& capture, std::size_
 std::vector<ImagePanel> animation_panels(const core::Capture& capture, std::size_t most) {
     if (!is_picture(capture.scan)) {
         throw core::Error(
-            "animation", "found a list of points", "must be a grid of points or a camera");
+            "film", "found a list of points", "must be a grid of points or a camera");
     }
     if (capture.sequence) return sequence_panels(capture, most);
     if (capture.transient.num_bins() < 2) {
         throw core::Error(
-            "animation", "found one time bin", "must be several, or a sequence of frames");
+            "film", "found one time bin", "must be several, or a sequence of frames");
     }
     return bin_panels(capture, most);
 }

@@ -10,14 +10,13 @@ namespace nlos {
 struct MethodTraits;  // nlos/methods/methods.h
 
 // The list of reconstruction methods. What a method is stands in its row, in a file of its own;
-// here it has an enumerator, that row and its name in settings, in the same order: the simplest
-// first.
+// here it has an enumerator, that row and its name in settings, in the same order.
 
-enum class Method { Auto, Bp, Fbp, Lct, Dlct, Fk, Phasor, Solver };
+enum class Method { Auto, Lct, Bp, Fbp, Fk, Phasor, Dlct, Solver };
 
-extern const MethodTraits kBp, kFbp, kLct, kDlct, kFk, kPhasor, kSolver;
+extern const MethodTraits kLct, kBp, kFbp, kFk, kPhasor, kDlct, kSolver;
 
-inline constexpr std::array kMethods{&kBp, &kFbp, &kLct, &kDlct, &kFk, &kPhasor, &kSolver};
+inline constexpr std::array kMethods{&kLct, &kBp, &kFbp, &kFk, &kPhasor, &kDlct, &kSolver};
 
 /// Of these `auto` takes the first that serves; the last serves every capture.
 inline constexpr std::array kPreferredMethods{&kLct, &kPhasor, &kBp};
@@ -31,5 +30,5 @@ inline constexpr const MethodTraits& kStatisticalMethod = kSolver;
 template <>
 struct core::EnumNames<nlos::Method> {
     static constexpr auto value =
-        names_from_zero<nlos::Method>("auto", "bp", "fbp", "lct", "dlct", "fk", "phasor", "solver");
+        names_from_zero<nlos::Method>("auto", "lct", "bp", "fbp", "fk", "phasor", "dlct", "solver");
 };

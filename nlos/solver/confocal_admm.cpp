@@ -100,6 +100,7 @@ ConfocalAdmm::ConfocalAdmm(const MethodInput& input,
 int ConfocalAdmm::run(const core::Progress& progress, std::optional<int> at_most) {
     const int max_iterations = at_most.value_or(max_iterations_);
     split_data(true);
+    double share = 0.0;
     for (int i = 1; i <= max_iterations; ++i) {
         check_stop(progress);
         convolution_.solve(light_, right_);
@@ -108,9 +109,10 @@ int ConfocalAdmm::run(const core::Progress& progress, std::optional<int> at_most
         split_data(false);
         const Change change = split_field();
         if (!costs_.empty() && i % kReweightInterval == 0 && i <= kReweightUntil) reweight();
-        const double share =
-            std::max(static_cast<double>(i) / max_iterations,
-                     std::min(1.0, std::log(change.relative()) / std::log(tolerance_)));
+        // The change may grow for a while, the share done may not.
+        share = std::max({share,
+                          static_cast<double>(i) / max_iterations,
+                          std::min(1.0, std::log(change.relative()) / std::log(tolerance_))});
         progress.update(0.95 * share, fmt::format("change {:.2g}", change.relative()));
         if (change.relative() <= tolerance_) return i;
     }

@@ -93,8 +93,7 @@ class Pages:
 
     def bench(self) -> Path:
         folder = self.results("bench")
-        self.nlos("bench", "shift", "-o", folder, "--shifts", 100,
-                  "--scene", "scenes/letter/scene.json")
+        self.nlos("bench", "fit", "-o", folder, "--trials", 1, "--only", "direct_returns")
         return self.report(folder)
 
     def list_of_points(self) -> Path:
