@@ -134,8 +134,7 @@ class PairwiseMisMerge {
     PairwiseMisMerge(const Reservoir<Sample>& canonical, int num_neighbours)
         : canonical_(canonical),
           num_neighbours_(num_neighbours),
-          canonical_share_(num_neighbours > 0 ? canonical.confidence / num_neighbours : 0.0),
-          confidence_(canonical.confidence) {}
+          canonical_share_(num_neighbours > 0 ? canonical.confidence / num_neighbours : 0.0) {}
 
     /// here    image of the neighbour's sample in the canonical domain, nothing if it has none
     /// there   image of the canonical sample in the neighbour's domain, likewise
@@ -144,7 +143,6 @@ class PairwiseMisMerge {
                        const Carry& here,
                        const Carry& there,
                        double u) {
-        confidence_ += neighbour.confidence;
         if (!canonical_.empty()) {
             const double own = canonical_share_ * canonical_.target_value;
             canonical_weight_ +=
@@ -155,20 +153,21 @@ class PairwiseMisMerge {
         add_foreign(builder_, neighbour, here, canonical_share_, u);
     }
 
+    /// The result counts as many frames as the canonical reservoir: neighbours know no others.
+    ///
     /// u   uniform in [0, 1)
     Reservoir<Sample> finish(double u) {
         builder_.add(canonical_.sample,
                      canonical_.target_value,
                      canonical_weight_ * canonical_.estimate(),
                      u);
-        return builder_.finish(confidence_, 1.0 / (num_neighbours_ + 1.0));
+        return builder_.finish(canonical_.confidence, 1.0 / (num_neighbours_ + 1.0));
     }
 
  private:
     const Reservoir<Sample>& canonical_;
     int num_neighbours_;
     double canonical_share_;  ///< M_c / N
-    double confidence_;
     double canonical_weight_ = 1.0;
     ReservoirBuilder<Sample> builder_;
 };

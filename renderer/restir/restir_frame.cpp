@@ -212,7 +212,7 @@ ShiftedSample shift_sample(const PathReservoir& reservoir,
                            RestirCounts& counts) {
     if (reservoir.empty()) return std::nullopt;
     Carried<ReusablePath> carried{reservoir.sample, 0.0, 1.0};
-    if (from.scene == to.scene && from.pair == to.pair && from.gate == to.gate) {
+    if (from.is_same_as(to)) {
         carried.target_value = reservoir.target_value;
         return carried;
     }

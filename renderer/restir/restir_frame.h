@@ -158,6 +158,11 @@ struct ReservoirDomain {
           domain(&frame.domains[pair_index]),
           gate(frame.bins.gate(bin)),
           pair(pair_index) {}
+
+    /// Whether the same paths have the same target values in another domain.
+    bool is_same_as(const ReservoirDomain& other) const {
+        return scene == other.scene && pair == other.pair && gate == other.gate;
+    }
 };
 
 using PathReservoir = Reservoir<ReusablePath>;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/restir/restir_renderer.h"
 
-#include "renderer/core/nearest_neighbours.h"
 #include "renderer/core/parallel.h"
 
 #include <algorithm>
@@ -11,33 +10,21 @@
 namespace renderer {
 namespace {
 
-constexpr std::size_t kNearPoints = 8;
-constexpr std::ptrdiff_t kPixelRadius = 2;
-
-// The nearest other points of each point, (points, count).
-std::vector<std::size_t> near_points(const std::vector<core::Vec3>& points, std::size_t count) {
-    if (count == 0) return {};
-    const core::NearestNeighbours found = core::nearest_neighbours(points, points, count + 1);
-    std::vector<std::size_t> near;
-    near.reserve(points.size() * count);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        // A point is usually its own nearest, but not where points coincide.
-        const auto* const begin = found.indices.data() + i * (count + 1);
-        const auto* const self = std::find(begin, begin + count, i);
-        near.insert(near.end(), begin, self);
-        near.insert(near.end(), self + (self == begin + count ? 0 : 1), begin + count + 1);
-        near.resize((i + 1) * count);
-    }
-    return near;
-}
-
 constexpr std::size_t kPairsPerTask = 16;
 
-// Random number streams of one frame: one for the candidates, one per round of reuse, and one for
-// the positions within pixels.
+// Random number streams of one frame: one for the candidates, one per round of spatial reuse, one
+// for the reuse of the past, and one for the positions within pixels.
 constexpr std::uint64_t kStreamsPerFrame = 64;
 constexpr int kCandidateStage = 0;
 constexpr std::uint64_t kPixelStream = kStreamsPerFrame - 1;
+constexpr int kTemporalStage = kStreamsPerFrame - 2;
+
+// CPU time of a frame with a round of spatial reuse over that of one without. It is fixed, and not
+// measured, so that frames are the same on every machine.
+constexpr double kCostOfRound = 2.0;
+
+// How much of the sums over earlier frames is kept when a frame's are added.
+constexpr double kKeptStatistics = 0.7;
 
 // Width of the gate over that of the wider gate from which paths are shifted into it.
 constexpr double kShrink = 0.2;
@@ -64,59 +51,6 @@ PathCandidates::Effort effort_of(const RestirSettings& settings, double share) {
 
 }  // namespace
 
-RestirNeighbours::RestirNeighbours(const core::Scan& scan) : scan_(scan) {
-    const auto* wall = scan.as<core::WallScan>();
-    if (wall == nullptr) return;
-    near_sensing_count_ = std::min(kNearPoints, wall->sensing.size() - 1);
-    near_sensing_ = near_points(wall->sensing.positions, near_sensing_count_);
-    if (!wall->is_exhaustive()) return;
-    near_illumination_count_ = std::min(kNearPoints, wall->illumination.size() - 1);
-    near_illumination_ = near_points(wall->illumination.positions, near_illumination_count_);
-}
-
-void RestirNeighbours::list(const core::ImageScan& image,
-                            std::size_t pixel,
-                            std::vector<std::size_t>& near) const {
-    const auto width = static_cast<std::ptrdiff_t>(image.camera.width());
-    const auto height = static_cast<std::ptrdiff_t>(image.camera.height());
-    const std::ptrdiff_t x = static_cast<std::ptrdiff_t>(pixel) / height;
-    const std::ptrdiff_t y = static_cast<std::ptrdiff_t>(pixel) % height;
-    for (std::ptrdiff_t i = x - kPixelRadius; i <= x + kPixelRadius; ++i) {
-        for (std::ptrdiff_t j = y - kPixelRadius; j <= y + kPixelRadius; ++j) {
-            if (i < 0 || j < 0 || i >= width || j >= height || (i == x && j == y)) continue;
-            near.push_back(static_cast<std::size_t>(i * height + j));
-        }
-    }
-}
-
-void RestirNeighbours::list(const core::WallScan& scan,
-                            std::size_t pair,
-                            std::vector<std::size_t>& near) const {
-    const std::size_t sensing = scan.sensing.size();
-    const std::size_t sensor = pair % sensing;
-    for (std::size_t i = 0; i < near_sensing_count_; ++i) {
-        near.push_back(pair - sensor + near_sensing_[sensor * near_sensing_count_ + i]);
-    }
-    for (std::size_t i = 0; i < near_illumination_count_; ++i) {
-        const std::size_t light = pair / sensing;
-        near.push_back(near_illumination_[light * near_illumination_count_ + i] * sensing + sensor);
-    }
-}
-
-void RestirNeighbours::pick(std::size_t pair,
-                            int count,
-                            core::Rng& rng,
-                            std::vector<std::size_t>& picked) const {
-    picked.clear();
-    scan_.visit([&](const auto& kind) { list(kind, pair, picked); });
-    const std::size_t wanted = std::min(picked.size(), static_cast<std::size_t>(count));
-    for (std::size_t i = 0; i < wanted; ++i) {
-        const auto rest = static_cast<double>(picked.size() - i);
-        std::swap(picked[i], picked[i + static_cast<std::size_t>(rng.uniform() * rest)]);
-    }
-    picked.resize(wanted);
-}
-
 // The state of a thread that works on some pairs of a frame.
 struct RestirRenderer::Worker {
     const RestirSettings& settings;
@@ -126,6 +60,8 @@ struct RestirRenderer::Worker {
     std::size_t pair = 0;
     RestirCounts counts{};
     std::vector<std::size_t> neighbours{};
+    std::array<ReuseStatistics, 2> statistics{};  // of even and odd pairs
+    std::array<double, 2> shift_noise{};          // in earlier frames, for even and odd pairs
 
     // Draws paths of the pair within a gate and offers them to the builder of their bin.
     template <class BuilderOf>
@@ -140,7 +76,9 @@ struct RestirRenderer::Worker {
                 const double target = value.radiance * gate.weight(value.extent.opl_m);
                 ReusablePath placed = path;
                 placed.pixel_u = domain.pixel_u;
-                builder->add(placed, target, target / density, rng.uniform());
+                const double weight = target / density;
+                statistics[pair % 2].candidate_variance += weight * weight;
+                builder->add(placed, target, weight, rng.uniform());
             });
     }
 
@@ -168,14 +106,24 @@ struct RestirRenderer::Worker {
         return merge(narrow, here, builder.finish(share * kConfidenceOfFrame), wide);
     }
 
-    PathReservoir reuse_temporally(const RestirFrame& previous,
-                                   std::size_t bin,
-                                   const PathReservoir& fresh) {
-        const std::size_t index = pair * frame.bins.count() + bin;
-        return merge(fresh,
-                     {frame, pair, bin},
-                     limited(previous.reservoirs.load(index), settings.confidence_cap),
-                     {previous, pair, bin});
+    PathReservoir with_past(const RestirFrame& previous,
+                            std::size_t bin,
+                            const PathReservoir& fresh) {
+        const ReservoirDomain here(frame, pair, bin);
+        const ReservoirDomain there(previous, pair, bin);
+        PathReservoir past = previous.reservoirs.load(pair * frame.bins.count() + bin);
+        const ShiftedSample in = shift_sample(past, there, here, *frame.scene, counts);
+        const ShiftedSample out = shift_sample(fresh, here, there, *frame.scene, counts);
+        ++counts.num_merges;
+        ReuseStatistics& sums = statistics[pair % 2];
+        if (!here.is_same_as(there)) {
+            past = limited(past, settings.confidence_cap);
+            sums.add_shift(fresh, past, in);
+            past.confidence /= 1.0 + past.confidence * shift_noise[pair % 2];
+        }
+        sums.past_frames += past.confidence;
+        ++sums.num_pasts;
+        return resample_balance_heuristic(fresh, past, in, out, rng.uniform(), rng.uniform());
     }
 
     PathReservoir with_neighbours(std::size_t bin) {
@@ -203,7 +151,7 @@ struct RestirRenderer::Worker {
         for (const std::size_t other : neighbours) add(other, bin);
         if (before) add(pair, *before);
         if (after) add(pair, *after);
-        return limited(merged.finish(rng.uniform()), settings.confidence_cap);
+        return merged.finish(rng.uniform());
     }
 };
 
@@ -225,9 +173,13 @@ void RestirRenderer::for_each_pair(const FrameInput& input,
                                    int stage,
                                    const std::function<void(Worker&)>& body) {
     std::mutex mutex;
+    // Of each block, to be added in order: sums must not depend on the number of threads.
+    std::vector<std::array<ReuseStatistics, 2>> statistics((scan_.num_pairs() + kPairsPerTask - 1) /
+                                                           kPairsPerTask);
     core::parallel_blocks(
         scan_.num_pairs(), kPairsPerTask, [&](std::size_t begin, std::size_t end) {
             Worker worker{settings_.restir, frame, {}};
+            worker.shift_noise = {statistics_[1].shift_noise(), statistics_[0].shift_noise()};
             worker.builders.resize(frame.bins.count());
             for (std::size_t pair = begin; pair < end; ++pair) {
                 worker.pair = pair;
@@ -237,9 +189,13 @@ void RestirRenderer::for_each_pair(const FrameInput& input,
                               input.number * kStreamsPerFrame + static_cast<std::uint64_t>(stage));
                 body(worker);
             }
+            statistics[begin / kPairsPerTask] = worker.statistics;
             const std::lock_guard lock(mutex);
             counts_ += worker.counts;
         });
+    for (const auto& block : statistics) {
+        for (const std::size_t half : {0, 1}) statistics_of_frame_[half].add(block[half]);
+    }
 }
 
 RestirFrame RestirRenderer::render(const FrameInput& input) {
@@ -252,10 +208,35 @@ RestirFrame RestirRenderer::render(const FrameInput& input) {
     counts_.num_rays += input.scene->candidates.prepare(settings_.seed, input.number);
     generate_candidates(input, frame);
     if (settings_.restir.reuse == Reuse::None) return frame;
-    for (int round = 0; round < settings_.restir.rounds; ++round) {
-        reuse_spatially(input, round, frame);
-    }
+    const int rounds = rounds_of_spatial_reuse(input);
+    for (int round = 0; round < rounds; ++round) reuse_spatially(input, round, frame);
+    reuse_temporally(input, frame);
+    end_statistics_of_frame(rounds > 0);
     return frame;
+}
+
+int RestirRenderer::rounds_of_spatial_reuse(const FrameInput& input) const {
+    if (settings_.restir.rounds) return *settings_.restir.rounds;
+    // Wall points see the hidden scene each from elsewhere: on scans a round never gains what it
+    // costs, and is not even tried.
+    if (!gain_of_spatial_reuse_) return input.scene->sensor_pairs.is_image() ? 1 : 0;
+    double past = 0.0;
+    if (input.previous != nullptr) {
+        for (const ReuseStatistics& half : statistics_) past += 0.5 * half.mean_past_frames();
+    }
+    return past + *gain_of_spatial_reuse_ > kCostOfRound * (past + 1.0) ? 1 : 0;
+}
+
+void RestirRenderer::end_statistics_of_frame(bool had_spatial_reuse) {
+    if (had_spatial_reuse) {
+        ReuseStatistics both = statistics_of_frame_[0];
+        both.add(statistics_of_frame_[1]);
+        gain_of_spatial_reuse_ = both.gain_of_spatial_reuse();
+    }
+    for (const std::size_t half : {0, 1}) {
+        statistics_[half].add(statistics_of_frame_[half], kKeptStatistics);
+        statistics_of_frame_[half] = {};
+    }
 }
 
 void RestirRenderer::find_domains(const FrameInput& input, RestirFrame& frame) const {
@@ -272,7 +253,6 @@ void RestirRenderer::find_domains(const FrameInput& input, RestirFrame& frame) c
 
 void RestirRenderer::generate_candidates(const FrameInput& input, RestirFrame& frame) {
     const std::size_t num_bins = frame.bins.count();
-    const bool reuses = settings_.restir.reuse != Reuse::None && input.previous != nullptr;
     for_each_pair(input, frame, kCandidateStage, [&](Worker& worker) {
         auto& builders = worker.builders;
         std::fill(builders.begin(), builders.end(), ReservoirBuilder<ReusablePath>());
@@ -284,10 +264,9 @@ void RestirRenderer::generate_candidates(const FrameInput& input, RestirFrame& f
         for (std::size_t bin = 0; bin < num_bins; ++bin) {
             PathReservoir fresh = builders[bin].finish(share * kConfidenceOfFrame);
             if (share < 1.0) fresh = worker.sample_wide_gate(fresh);
-            const bool is_reused = reuses && !frame.bins.is_left_out(bin);
-            frame.reservoirs.store(
-                worker.pair * num_bins + bin,
-                is_reused ? worker.reuse_temporally(*input.previous, bin, fresh) : fresh);
+            const double estimate = fresh.estimate();
+            worker.statistics[worker.pair % 2].candidates += estimate * estimate;
+            frame.reservoirs.store(worker.pair * num_bins + bin, fresh);
         }
     });
 }
@@ -311,6 +290,20 @@ void RestirRenderer::reuse_spatially(const FrameInput& input, int round, RestirF
         }
     });
     frame.reservoirs = std::move(merged);
+}
+
+void RestirRenderer::reuse_temporally(const FrameInput& input, RestirFrame& frame) {
+    const std::size_t num_bins = frame.bins.count();
+    for_each_pair(input, frame, kTemporalStage, [&](Worker& worker) {
+        for (std::size_t bin = 0; bin < num_bins; ++bin) {
+            const std::size_t index = worker.pair * num_bins + bin;
+            const PathReservoir fresh = frame.reservoirs.load(index);
+            const double estimate = fresh.estimate();
+            worker.statistics[worker.pair % 2].fresh += estimate * estimate;
+            if (input.previous == nullptr || frame.bins.is_left_out(bin)) continue;
+            frame.reservoirs.store(index, worker.with_past(*input.previous, bin, fresh));
+        }
+    });
 }
 
 }  // namespace renderer

@@ -2,37 +2,24 @@
 #pragma once
 
 #include "renderer/restir/restir_frame.h"
+#include "renderer/restir/restir_neighbours.h"
+#include "renderer/restir/reuse_statistics.h"
 
-#include <vector>
+#include <array>
+#include <functional>
+#include <optional>
 
 namespace renderer {
 
-/// Which pairs are near each other: pixels by position in the image, wall points by distance, so
-/// that scans need not be grids.
-class RestirNeighbours {
- public:
-    /// scan   of which the pairs are
-    explicit RestirNeighbours(const core::Scan& scan);
-
-    /// Picks different pairs near a pair at random, fewer where there are not as many.
-    void pick(std::size_t pair, int count, core::Rng& rng, std::vector<std::size_t>& picked) const;
-
- private:
-    void list(const core::WallScan& scan, std::size_t pair, std::vector<std::size_t>& near) const;
-    void list(const core::ImageScan& image,
-              std::size_t pixel,
-              std::vector<std::size_t>& near) const;
-
-    core::Scan scan_;
-    std::size_t near_sensing_count_ = 0;  ///< per point
-    std::size_t near_illumination_count_ = 0;
-    std::vector<std::size_t> near_sensing_;       ///< (points, count)
-    std::vector<std::size_t> near_illumination_;  ///< likewise; empty unless exhaustive
-};
-
 /// Spatio-temporal resampling of paths (source [Kim2026], [Lin2022]): every pair and bin keeps one
-/// path that represents all its candidates, and reuses the paths of the previous frame and of its
-/// neighbours, shifted to the path length of its own gate.
+/// path that represents all its candidates, and reuses those of its neighbours and the path of the
+/// previous frame, shifted to the path length of its own gate.
+///
+/// Neighbours hand on the candidates of their frame alone, before each meets its own past. A past
+/// is one path, too, whatever number of frames it represents: shifted to a neighbour it is as noisy
+/// as any path, and what came of that would be the past of the next frame. Where nothing has
+/// changed the past needs no shift, and frames add up to their mean; elsewhere it counts as many
+/// frames as the measured noise of shifts lets it be worth.
 class RestirRenderer {
  public:
     /// scan   of every frame
@@ -58,7 +45,10 @@ class RestirRenderer {
 
     void find_domains(const FrameInput& input, RestirFrame& frame) const;
     void generate_candidates(const FrameInput& input, RestirFrame& frame);
+    int rounds_of_spatial_reuse(const FrameInput& input) const;
     void reuse_spatially(const FrameInput& input, int round, RestirFrame& frame);
+    void reuse_temporally(const FrameInput& input, RestirFrame& frame);
+    void end_statistics_of_frame(bool had_spatial_reuse);
     void for_each_pair(const FrameInput& input,
                        const RestirFrame& frame,
                        int stage,
@@ -69,6 +59,11 @@ class RestirRenderer {
     int max_vertices_;
     RestirNeighbours neighbours_;
     RestirCounts counts_;
+    // Of even and of odd pairs: each half takes what the other one tells, since confidences must
+    // not follow from the samples that they weigh.
+    std::array<ReuseStatistics, 2> statistics_{};  ///< of earlier frames, fading
+    std::array<ReuseStatistics, 2> statistics_of_frame_{};
+    std::optional<double> gain_of_spatial_reuse_;  ///< in the last frame that had it
 };
 
 }  // namespace renderer

@@ -29,7 +29,7 @@ struct RestirSettings {
     Reuse reuse = Reuse::PathLength;
     Chart chart = Chart::Adaptive;
     Gauge gauge = Gauge::Average;
-    int rounds = 1;
+    std::optional<int> rounds;
     int neighbours = 3;
     int confidence_cap = 20;
     double shrink_fraction = 0.0;
@@ -54,10 +54,13 @@ void for_each_field(RestirSettings& s, Visitor&& visit) {
     visit("reuse", s.reuse, "how paths are reused");
     visit("chart", s.chart, "coordinates in which a vertex moves");
     visit("gauge", s.gauge, "what fixes the second coordinate");
-    visit("rounds", s.rounds, core::at_least(0, "rounds of spatial reuse"));
+    visit("rounds",
+          s.rounds,
+          core::at_least(0, "rounds of spatial reuse per frame; null: one where it pays"));
     visit("neighbours", s.neighbours, core::at_least(0, "neighbours per round"));
-    visit(
-        "confidence_cap", s.confidence_cap, core::at_least(1, "cap of the confidence, in frames"));
+    visit("confidence_cap",
+          s.confidence_cap,
+          core::at_least(1, "frames that the past counts at most where scene or gate change"));
     // Shifted walks do not reach all paths of the gate: some must be drawn in it.
     visit("shrink_fraction",
           s.shrink_fraction,

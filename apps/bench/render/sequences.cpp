@@ -266,8 +266,8 @@ std::vector<SequenceMethod> standard_methods(const SequenceCase& sequence) {
     const bool is_image = !setup.scan.has_wall();
     const bool is_static = sequence.is_static();
     // Good candidates leave little for reuse to add: a moving gate then wants a short memory.
-    const auto cap = [&](int moving) {
-        return fmt::format("render.restir.confidence_cap={}", is_static ? 50 : moving);
+    const auto cap = [](int frames) {
+        return fmt::format("render.restir.confidence_cap={}", frames);
     };
     const auto near = [&](int moving) {
         return fmt::format("render.restir.neighbours={}", is_static ? 0 : moving);
@@ -284,6 +284,7 @@ std::vector<SequenceMethod> standard_methods(const SequenceCase& sequence) {
     const std::string alone = "render.restir.reuse=none";
     std::vector<SequenceMethod> methods{
         {"path", {"render.method=path", is_image ? "render.samples=16" : "render.samples=128"}},
+        {"restir, default", {restir}},
         {"ellipsoidal",
          {"render.method=ellipsoidal", is_image ? "render.samples=4" : "render.samples=32"}},
         {"naive, ellipsoidal",

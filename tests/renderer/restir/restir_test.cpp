@@ -132,7 +132,8 @@ const std::vector<Case> kCases{
          s.restir.candidates = renderer::Candidates::All;
          s.restir.walks = 8;
      }},
-    {"one_round", [](auto&) {}},
+    {"default", [](auto&) {}},
+    {"one_round", [](auto& s) { s.restir.rounds = 1; }},
     {"eight_rounds", [](auto& s) { s.restir.rounds = 8; }},
     {"naive", [](auto& s) { s.restir.reuse = renderer::Reuse::Naive; }},
     {"plane", [](auto& s) { s.restir.chart = renderer::Chart::Plane; }},
@@ -231,7 +232,7 @@ TEST_P(RestirOfScenes, AgreesWithPathTracing) {
         {"excluded", [](auto& s) { s.restir.candidates = renderer::Candidates::All; }}};
     const auto scene_number =
         static_cast<std::size_t>(std::ranges::find(kScenes, GetParam()) - kScenes.begin());
-    const std::vector<Case> kinds{{"one_round", [](auto&) {}},
+    const std::vector<Case> kinds{{"default", [](auto&) {}},
                                   others[scene_number % others.size()],
                                   {"connected", [](auto& s) {
                                        s.restir.candidates = renderer::Candidates::All;
@@ -329,21 +330,20 @@ TEST(Restir, SameBitsForAnyNumberOfThreads) {
 }
 
 TEST(Restir, StaticFramesSettle) {
-    // With a gate that stands still, what frames have seen adds up.
+    // With a gate that stands still, what frames have seen adds up: by no more than the settings'
+    // defaults, the error falls as that of the mean of the frames does.
     const core::Scan scan = wall_scan(core::ScanPattern::Confocal);
     renderer::SceneDescription description;
     description.time_axis = {kGate};
     description.frames = {20, 0.0, 0.0};
     description.render = restir_settings(Estimator::Restir, 65, 3);
-    description.render.restir.confidence_cap = 50;
-    description.render.restir.rounds = 0;
     const Estimate estimate = repeat(
         [&](std::uint64_t seed) {
             description.render.seed = seed;
             return sums_of_frames(scan, description, false);
         },
         "Restir.Static");
-    EXPECT_LT(estimate.squared_error[19], 0.3 * estimate.squared_error[0]);
+    EXPECT_LT(estimate.squared_error[19], 0.12 * estimate.squared_error[0]);
 }
 
 TEST(Restir, SettingsSayWhatIsWrong) {
