@@ -14,7 +14,7 @@ namespace {
 using renderer::PathReservoir;
 using renderer::ReuseStatistics;
 
-constexpr int kPairs = 100'000;
+constexpr int kPairs = 400'000;
 
 PathReservoir reservoir_of(double estimate, double confidence) {
     PathReservoir reservoir;
@@ -69,7 +69,7 @@ TEST(ReuseStatistics, TellTheNoiseOfShifts) {
         Model model;
         model.kept = kept;
         const double expected = model.shift_variance() / model.frame_variance;
-        EXPECT_NEAR(model.statistics().shift_noise(), expected, 0.05 * expected) << kept;
+        EXPECT_NEAR(model.statistics().shift_noise(), expected, 0.07 * expected) << kept;
     }
 }
 
@@ -84,7 +84,7 @@ TEST(ReuseStatistics, TellWhatSpatialReuseGains) {
     Model model;
     for (const double gain : {0.5, 1.0, 3.0}) {
         model.fresh_variance = model.frame_variance / gain;
-        EXPECT_NEAR(model.statistics().gain_of_spatial_reuse(), gain, 0.07 * gain);
+        EXPECT_NEAR(model.statistics().gain_of_spatial_reuse(), gain, 0.1 * gain);
     }
 }
 

@@ -52,7 +52,7 @@ TEST(SceneFile, AllKeysOfTheFormatAreRead) {
                     "exclude": "mis", "exclude_area_above_m2": null, "gate": "box",
                     "by_order": false, "direct_return": false,
                     "restir": { "reuse": "path_length", "chart": "adaptive", "gauge": "average",
-                                "rounds": 1, "neighbours": 3, "confidence_cap": 20,
+                                "rounds": null, "neighbours": 3, "confidence_cap": 20,
                                 "shrink_fraction": 0 } },
         "ground_truth": { "depth_resolution": [256, 256] } })");
     EXPECT_EQ(core::write_value(scene.render), core::write_value(renderer::RenderSettings{}));
