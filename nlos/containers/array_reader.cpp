@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/array_reader.h"
 
+#include "nlos/containers/text_checksum.h"
 #include "renderer/core/error.h"
 #include "renderer/core/json_file.h"
 #include "renderer/core/sandboxed_process.h"
@@ -228,7 +229,19 @@ std::string ArrayReader::read_text(const std::string& name) const {
     if (!describe(name)->text) {
         throw core::Error(where(name), "has shape " + shape_text(shape(name)), "must be one text");
     }
+    check_text(*describe(name)->text, name, kTextChecksum);
     return *describe(name)->text;
+}
+
+/// Holds a text against its checksum, the attribute `checksum`, where there is one.
+void ArrayReader::check_text(const std::string& text,
+                             const std::string& object,
+                             const std::string& checksum) const {
+    const auto stated = real_attribute(object, checksum);
+    if (!stated || (stated->size() == 1 && stated->front() == text_checksum(text))) return;
+    throw core::Error(where(object),
+                      "is damaged: a text does not agree with its checksum, attribute " + checksum,
+                      "must be as it was written, or without that attribute");
 }
 
 /// How many rows there are to read: none of an array without values, however many it claims.
@@ -255,7 +268,10 @@ std::optional<std::string> ArrayReader::text_attribute(const std::string& object
                                                        const std::string& name) const {
     const Json* value = find_attribute(object, name);
     if (value == nullptr) return {};
-    if (value->is_string()) return *value;
+    if (value->is_string()) {
+        check_text(*value, object, checksum_attribute(name));
+        return *value;
+    }
     throw core::Error(where(object + " attribute " + name), "holds no text", "must be one text");
 }
 

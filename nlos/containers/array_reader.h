@@ -95,6 +95,9 @@ class ArrayReader {
     const std::optional<ArrayDescription>& describe(const std::string& name) const;
     const ArrayDescription& describe_array(const std::string& name) const;
     const core::Json* find_attribute(const std::string& object, const std::string& name) const;
+    void check_text(const std::string& text,
+                    const std::string& object,
+                    const std::string& checksum) const;
     void require_numeric(const std::string& name) const;
     std::size_t row_count(const std::string& name) const;
     std::size_t rows_per_read(const std::string& name) const;

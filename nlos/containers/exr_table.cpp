@@ -18,6 +18,7 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTestFile.h>
 #include <fmt/core.h>
+#include <zlib.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -27,6 +28,7 @@ namespace {
 
 constexpr std::size_t kColumnBytes = sizeof(float);
 constexpr std::uint64_t kMaxChannels = 1 << 16;
+constexpr const char* kChecksum = "nlosCrc32";
 
 core::Error damaged_table(const std::string& path) {
     return {path, "is damaged or cut short", "must be a complete OpenEXR file"};
@@ -54,6 +56,31 @@ void check_kind_and_size(const std::string& path) {
     const std::uint64_t width = static_cast<std::uint64_t>(window.max.x - window.min.x) + 1;
     const std::uint64_t height = static_cast<std::uint64_t>(window.max.y - window.min.y) + 1;
     if (width > most_pixels / height) throw damaged_table(path);
+}
+
+/// CRC-32 of the channels and of our attributes, which the format does not guard.
+double checksum_of(const ExrTable& table) {
+    uLong crc = 0;
+    const auto add = [&](const std::string& name, const void* values, std::size_t bytes) {
+        crc = ::crc32_z(crc, reinterpret_cast<const Bytef*>(name.data()), name.size());
+        crc = ::crc32_z(crc, static_cast<const Bytef*>(values), bytes);
+    };
+    const auto is_ours = [](const std::string& name) {
+        return name.starts_with("nlos") && name != kChecksum;
+    };
+    for (const auto& [name, values] : table.channels) {
+        add(name, values.data(), values.size() * sizeof(float));
+    }
+    for (const auto& [name, value] : table.numbers) {
+        if (is_ours(name)) add(name, &value, sizeof(value));
+    }
+    for (const auto& [name, text] : table.texts) {
+        if (is_ours(name)) add(name, text.data(), text.size());
+    }
+    for (const auto& [name, values] : table.lists) {
+        if (is_ours(name)) add(name, values.data(), values.size() * sizeof(float));
+    }
+    return static_cast<double>(crc);
 }
 
 core::Json to_json(const ExrTable& table) {
@@ -128,6 +155,10 @@ ExrTable read_with_library(const std::string& path) {
             table.lists[a.name()] = list->value();
         }
     }
+    const auto stated = table.numbers.find(kChecksum);
+    if (stated != table.numbers.end() && stated->second != checksum_of(table)) {
+        throw damaged_table(path);
+    }
     return table;
 }
 
@@ -151,6 +182,7 @@ void write_exr_table(const std::string& path, const ExrTable& table) {
     for (const auto& [name, value] : table.numbers) {
         header.insert(name, Imf::DoubleAttribute(value));
     }
+    header.insert(kChecksum, Imf::DoubleAttribute(checksum_of(table)));
     for (const auto& [name, value] : table.texts) {
         header.insert(name, Imf::StringAttribute(value));
     }

@@ -23,6 +23,9 @@ bool is_exr_file(const std::string& path);
 
 /// Reads a single image of scan lines, each channel as float.
 ///
+/// The format guards packed pixels only, so that files of ours state a checksum of pixels and of
+/// the attributes nlos*: the attribute nlosCrc32.
+///
 /// throws   core::Error when it is damaged, cut short, or tiled, deep or of several parts;
 ///          core::Failure when it would not fit in memory
 ExrTable read_exr_table(const std::string& path);

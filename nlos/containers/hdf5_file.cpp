@@ -19,10 +19,6 @@ using core::Json;
 
 namespace {
 
-[[noreturn]] void throw_unreadable(const std::string& where) {
-    throw core::Error(where, "cannot be read", "must be an undamaged, complete file");
-}
-
 ElementKind kind_of(const Hdf5Handle& type) {
     constexpr std::size_t kWidestNumber = 16;
     const H5T_class_t type_class = H5Tget_class(type.id());
@@ -41,14 +37,14 @@ std::string fetch_text(const Hdf5Handle& type, const std::string& where, Read&& 
     if (H5Tis_variable_str(type.id()) > 0) {
         H5Tset_size(text.id(), H5T_VARIABLE);
         char* characters = nullptr;
-        if (!read(text.id(), static_cast<void*>(&characters))) throw_unreadable(where);
+        if (!read(text.id(), static_cast<void*>(&characters))) throw_damaged_hdf5(where);
         return characters == nullptr ? "" : characters;  // the process ends before long
     }
     const std::size_t length = H5Tget_size(type.id());
-    if (length == 0 || length > kLongestText) throw_unreadable(where);
+    if (length == 0 || length > kLongestText) throw_damaged_hdf5(where);
     H5Tset_size(text.id(), length + 1);
     std::string result(length + 1, '\0');
-    if (!read(text.id(), static_cast<void*>(result.data()))) throw_unreadable(where);
+    if (!read(text.id(), static_cast<void*>(result.data()))) throw_damaged_hdf5(where);
     result.resize(result.find('\0'));
     return result;
 }
@@ -71,7 +67,7 @@ Json attribute_value(const Hdf5Handle& attribute, const std::string& where) {
     }
     std::vector<double> values(count);
     if (count > 0 && H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, values.data()) < 0) {
-        throw_unreadable(where);
+        throw_damaged_hdf5(where);
     }
     return values;
 }
@@ -171,12 +167,16 @@ void require_own_storage(const Hdf5Handle& dataset, const std::string& where) {
 
 }  // namespace
 
+void throw_damaged_hdf5(const std::string& where) {
+    throw core::Error(where, "is damaged or cut short", "must be a complete, undamaged file");
+}
+
 Shape extents_of(const Hdf5Handle& space, const std::string& where) {
     const int rank = H5Sget_simple_extent_ndims(space.id());
-    if (rank < 0) throw_unreadable(where);
+    if (rank < 0) throw_damaged_hdf5(where);
     std::vector<hsize_t> extents(static_cast<std::size_t>(rank));
     if (rank > 0 && H5Sget_simple_extent_dims(space.id(), extents.data(), nullptr) < 0) {
-        throw_unreadable(where);
+        throw_damaged_hdf5(where);
     }
     return {extents.begin(), extents.end()};
 }
@@ -210,7 +210,7 @@ Hdf5File::Hdf5File(std::string path) : path_(std::move(path)) {
 
 Hdf5Handle Hdf5File::open_root() const {
     Hdf5Handle root(H5Gopen2(file_.id(), "/", H5P_DEFAULT), H5Gclose);
-    if (!root.is_valid()) throw_unreadable(path_);
+    if (!root.is_valid()) throw_damaged_hdf5(path_);
     return root;
 }
 
@@ -269,7 +269,7 @@ Hdf5Handle Hdf5File::open_member(const Hdf5Handle& group, const std::string& pat
     }
     if (H5Oexists_by_name(group.id(), path.c_str(), H5P_DEFAULT) <= 0) return {};
     Hdf5Handle object(H5Oopen(group.id(), path.c_str(), H5P_DEFAULT), H5Oclose);
-    if (!object.is_valid()) throw_unreadable(where(path));
+    if (!object.is_valid()) throw_damaged_hdf5(where(path));
     return object;
 }
 
@@ -282,11 +282,11 @@ Json Hdf5File::describe_attributes(const Hdf5Handle& object, const std::string& 
         return id < 0 ? -1 : names.size() == kMost ? 1 : 0;
     };
     if (H5Aiterate2(object.id(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add, &attributes) < 0) {
-        throw_unreadable(where(name));
+        throw_damaged_hdf5(where(name));
     }
     for (const auto& [key, value] : attributes.items()) {
         const Hdf5Handle attribute(H5Aopen(object.id(), key.c_str(), H5P_DEFAULT), H5Aclose);
-        if (!attribute.is_valid()) throw_unreadable(where(name + " attribute " + key));
+        if (!attribute.is_valid()) throw_damaged_hdf5(where(name + " attribute " + key));
         value = attribute_value(attribute, where(name + " attribute " + key));
     }
     return attributes;
@@ -324,7 +324,7 @@ std::string Hdf5File::read(const std::string& name, const WantedRows& rows) cons
     const hid_t type = is_double ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
     if (!values.empty() &&
         H5Dread(dataset.id(), type, memory.id(), space.id(), H5P_DEFAULT, values.data()) < 0) {
-        throw_unreadable(where(name));
+        throw_damaged_hdf5(where(name));
     }
     return values;
 }

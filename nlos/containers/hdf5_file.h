@@ -45,6 +45,9 @@ class Hdf5File : public ArrayFile {
     Hdf5Handle file_;
 };
 
+/// Throws the core::Error of what the library could not read.
+[[noreturn]] void throw_damaged_hdf5(const std::string& where);
+
 /// The extents of a dataspace. Throws core::Error when it is damaged.
 Shape extents_of(const Hdf5Handle& space, const std::string& where);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/array_file.h"
+#include "nlos/containers/deflated_bytes.h"
 #include "nlos/containers/file_memory.h"
 #include "nlos/containers/matlab_name.h"
 #include "nlos/containers/stored_number.h"
@@ -15,7 +16,6 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 namespace nlos {
@@ -32,27 +32,30 @@ constexpr std::uint64_t kTagBytes = 8;
     throw core::Error(path, "is damaged or cut short", "must be a complete MATLAB v5 file");
 }
 
-std::uint32_t swap_bytes(std::uint32_t bits) {
-    return bits >> 24 | (bits >> 8 & 0xff00U) | (bits << 8 & 0xff0000U) | bits << 24;
-}
-
-/// Checks that every element lies within the file, which the library takes for granted.
+/// Checks that every element lies within the file, which the library takes for granted, and holds
+/// what is compressed against its checksum, at which the library does not look.
 void check_elements(const std::string& path) {
-    std::error_code error;
-    const std::uint64_t file_bytes = std::filesystem::file_size(path, error);
-    std::ifstream file(path, std::ios::binary);
-    std::array<char, kMatHeaderBytes> header{};
-    if (error || !file.read(header.data(), header.size())) throw_damaged_mat(path);
-    const bool swapped = header[kMatHeaderBytes - 2] == 'M';
-    for (std::uint64_t begin = kMatHeaderBytes; begin < file_bytes;) {
-        std::array<std::uint32_t, 2> tag{};
-        file.seekg(static_cast<std::streamoff>(begin));
-        if (!file.read(reinterpret_cast<char*>(tag.data()), kTagBytes)) throw_damaged_mat(path);
-        const std::uint32_t type = swapped ? swap_bytes(tag[0]) : tag[0];
-        const std::uint32_t size = swapped ? swap_bytes(tag[1]) : tag[1];
+    const core::MappedFile file(path);
+    const std::string_view bytes = file.bytes();
+    if (bytes.size() < kMatHeaderBytes) throw_damaged_mat(path);
+    const std::endian order =
+        bytes[kMatHeaderBytes - 2] == 'M' ? std::endian::big : std::endian::little;
+    const auto word_at = [&](std::uint64_t place) {
+        return static_cast<std::uint32_t>(
+            number_at(bytes.data() + place, StoredNumber::UInt32, order));
+    };
+    for (std::uint64_t begin = kMatHeaderBytes; begin < bytes.size();) {
+        if (bytes.size() - begin < kTagBytes) throw_damaged_mat(path);
+        const std::uint32_t type = word_at(begin);
+        const std::uint32_t size = word_at(begin + 4);
+        begin += kTagBytes;
         const bool is_variable = type == MAT_T_MATRIX || type == MAT_T_COMPRESSED;
-        begin += kTagBytes + size;
-        if (!is_variable || size == 0 || begin > file_bytes) throw_damaged_mat(path);
+        if (!is_variable || size == 0 || size > bytes.size() - begin) throw_damaged_mat(path);
+        const std::string_view body = bytes.substr(begin, size);
+        if (type == MAT_T_COMPRESSED && !unpack(body, DeflateFrame::Zlib, [](auto) {})) {
+            throw_damaged_mat(path);
+        }
+        begin += size;
     }
 }
 

@@ -244,7 +244,7 @@ class Mat73File : public Hdf5File {
         std::vector<std::uint16_t> units(count);
         if (H5Dread(dataset.id(), H5T_NATIVE_UINT16, H5S_ALL, H5S_ALL, H5P_DEFAULT, units.data()) <
             0) {
-            throw core::Error(where(name), "cannot be read", "must be an undamaged, complete file");
+            throw_damaged_hdf5(where(name));
         }
         return utf8_text(reinterpret_cast<const char*>(units.data()),
                          units.size(),

@@ -25,9 +25,9 @@ class NpzFile : public ArrayFile {
     explicit NpzFile(const std::string& path)
         : path_(path), file_bytes_(std::filesystem::file_size(path)) {
         int error = 0;
-        archive_.reset(zip_open(path_.c_str(), ZIP_RDONLY, &error));
+        archive_.reset(zip_open(path_.c_str(), ZIP_RDONLY | ZIP_CHECKCONS, &error));
         if (!archive_) {
-            throw core::Error(path_, "is a damaged zip archive", "must be a complete .npz file");
+            throw core::Error(path_, "is damaged or cut short", "must be a complete .npz file");
         }
         if (names().names.empty()) {
             throw core::Error(
@@ -76,7 +76,7 @@ class NpzFile : public ArrayFile {
         constexpr zip_uint64_t kNeeded = ZIP_STAT_SIZE | ZIP_STAT_COMP_SIZE | ZIP_STAT_COMP_METHOD;
         if (zip_stat_index(archive_.get(), index, 0, &stat) != 0 ||
             (stat.valid & kNeeded) != kNeeded) {
-            throw core::Error(where(name), "cannot be read", "must be an undamaged archive");
+            throw core::Error(where(name), "is damaged", "must be an undamaged archive");
         }
         if (stat.comp_method != ZIP_CM_STORE && stat.comp_method != ZIP_CM_DEFLATE) {
             throw core::Error(where(name),
@@ -123,7 +123,7 @@ class NpzFile : public ArrayFile {
         }
         char beyond = 0;
         if (!member || done < size || (size == whole && zip_fread(member.get(), &beyond, 1) != 0)) {
-            throw core::Error(where(name), "cannot be unpacked", "must be an undamaged archive");
+            throw core::Error(where(name), "is damaged", "must be an undamaged archive");
         }
         return bytes;
     }

@@ -182,9 +182,9 @@ void write_volume(const std::string& path, const Reconstruction& reconstruction)
     }
     file.write_attribute("/", "method", reconstruction.method);
     file.write_attribute("/", "reason", reconstruction.reason);
-    file.write_attribute(
+    file.write_guarded_attribute(
         "/", "settings", core::json_text(core::write_value(reconstruction.settings)));
-    file.write_attribute("/", "provenance", core::json_text(*reconstruction.provenance));
+    file.write_guarded_attribute("/", "provenance", core::json_text(*reconstruction.provenance));
     const auto peak_bytes = static_cast<double>(reconstruction.peak_bytes);
     file.write_attribute("/", "seconds", {}, {&reconstruction.seconds, 1});
     file.write_attribute("/", "peak_bytes", {}, {&peak_bytes, 1});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/writers/hdf5_writer.h"
 
+#include "nlos/containers/text_checksum.h"
+#include "nlos/containers/writers/hdf5_storage.h"
 #include "renderer/core/error.h"
 
 #include <hdf5.h>
@@ -57,13 +59,6 @@ Hdf5Handle stored_type(StoredNumber number) {
     return {H5Tcopy(types[static_cast<std::size_t>(number)]), H5Tclose};
 }
 
-/// How datasets are created, without times: the same values give the same bytes.
-Hdf5Handle creation_plan() {
-    Hdf5Handle plan(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    H5Pset_obj_track_times(plan.id(), false);
-    return plan;
-}
-
 }  // namespace
 
 Hdf5Writer::Hdf5Writer(std::string target, std::string user_block)
@@ -105,29 +100,30 @@ Hdf5Handle Hdf5Writer::create_dataset(const std::string& name,
 
 void Hdf5Writer::write_dataset(const std::string& name,
                                std::int64_t type,
-                               const Hdf5Handle& space,
+                               const Shape& shape,
                                const void* values) {
     prepare_hdf5();
-    Hdf5Handle dataset = create_dataset(name, type, space, creation_plan());
+    Hdf5Handle dataset =
+        create_dataset(name, type, create_space(shape), guarded_creation(type, shape));
     check(H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
     check(dataset.close());
 }
 
 void Hdf5Writer::write(const std::string& name, const Shape& shape, std::span<const float> values) {
     assert(values.size() == total_bytes(shape, 1));
-    write_dataset(name, H5T_NATIVE_FLOAT, create_space(shape), values.data());
+    write_dataset(name, H5T_NATIVE_FLOAT, shape, values.data());
 }
 
 void Hdf5Writer::write(const std::string& name,
                        const Shape& shape,
                        std::span<const double> values) {
     assert(values.size() == total_bytes(shape, 1));
-    write_dataset(name, H5T_NATIVE_DOUBLE, create_space(shape), values.data());
+    write_dataset(name, H5T_NATIVE_DOUBLE, shape, values.data());
 }
 
 void Hdf5Writer::write(const std::string& name, const Shape& shape, std::span<const int> values) {
     assert(values.size() == total_bytes(shape, 1));
-    write_dataset(name, H5T_NATIVE_INT, create_space(shape), values.data());
+    write_dataset(name, H5T_NATIVE_INT, shape, values.data());
 }
 
 void Hdf5Writer::write_real(const std::string& name, double value) {
@@ -140,7 +136,7 @@ void Hdf5Writer::write_bool(const std::string& name, bool value) {
     const std::int8_t yes = 1;
     H5Tenum_insert(type.id(), "FALSE", &no);
     H5Tenum_insert(type.id(), "TRUE", &yes);
-    write_dataset(name, type.id(), create_space({}), value ? &yes : &no);
+    write_dataset(name, type.id(), {}, value ? &yes : &no);
 }
 
 void Hdf5Writer::write_enum(const std::string& name,
@@ -148,21 +144,23 @@ void Hdf5Writer::write_enum(const std::string& name,
                             int value) {
     const Hdf5Handle type(H5Tenum_create(H5T_NATIVE_INT32), H5Tclose);
     for (const auto& [member, number] : members) H5Tenum_insert(type.id(), member, &number);
-    write_dataset(name, type.id(), create_space({1}), &value);
+    write_dataset(name, type.id(), {1}, &value);
 }
 
 void Hdf5Writer::write_text(const std::string& name, const std::string& text) {
     const char* characters = text.c_str();
     const Hdf5Handle type = utf8_type();
-    write_dataset(name, type.id(), create_space({}), &characters);
+    write_dataset(name, type.id(), {}, &characters);
+    write_attribute(name, kTextChecksum, {}, {{text_checksum(text.c_str())}});
 }
 
 void Hdf5Writer::write_null(const std::string& name) {
-    create_dataset(name, H5T_NATIVE_FLOAT, {H5Screate(H5S_NULL), H5Sclose}, creation_plan());
+    create_dataset(name, H5T_NATIVE_FLOAT, {H5Screate(H5S_NULL), H5Sclose}, plain_creation());
 }
 
 Hdf5Handle Hdf5Writer::create_float_dataset(const std::string& name, const Shape& shape) {
-    return create_dataset(name, H5T_NATIVE_FLOAT, create_space(shape), creation_plan());
+    return create_dataset(
+        name, H5T_NATIVE_FLOAT, create_space(shape), guarded_creation(H5T_NATIVE_FLOAT, shape));
 }
 
 void Hdf5Writer::write_row_range(const Hdf5Handle& dataset,
@@ -186,12 +184,13 @@ void Hdf5Writer::create_rows(const std::string& name,
     chunk.insert(chunk.begin(), 1);
     Shape shape = row_shape;
     shape.insert(shape.begin(), rows);
-    const Hdf5Handle plan = creation_plan();
+    const Hdf5Handle plan = plain_creation();
     H5Pset_chunk(plan.id(), static_cast<int>(chunk.size()), chunk.data());
     if (level > 0) {
         H5Pset_shuffle(plan.id());
         H5Pset_deflate(plan.id(), static_cast<unsigned>(level));
     }
+    H5Pset_fletcher32(plan.id());
     row_datasets_[name] = create_dataset(name, stored_type(number).id(), create_space(shape), plan);
 }
 
@@ -212,13 +211,13 @@ void Hdf5Writer::write_numbers(const std::string& name,
                                const Shape& shape,
                                const std::string& bytes) {
     assert(bytes.size() == total_bytes(shape, 1) * bytes_of(number));
-    write_dataset(name, stored_type(number).id(), create_space(shape), bytes.data());
+    write_dataset(name, stored_type(number).id(), shape, bytes.data());
 }
 
 void Hdf5Writer::write_texts(const std::string& name, const std::vector<std::string>& texts) {
     std::vector<const char*> characters;
     for (const std::string& text : texts) characters.push_back(text.c_str());
-    write_dataset(name, utf8_type().id(), create_space({texts.size()}), characters.data());
+    write_dataset(name, utf8_type().id(), {texts.size()}, characters.data());
 }
 
 void Hdf5Writer::write_attribute(const std::string& object,
@@ -227,6 +226,13 @@ void Hdf5Writer::write_attribute(const std::string& object,
     const char* characters = text.c_str();
     const Hdf5Handle type = utf8_type();
     write_attribute_values(object, name, type.id(), {}, &characters);
+}
+
+void Hdf5Writer::write_guarded_attribute(const std::string& object,
+                                         const std::string& name,
+                                         const std::string& text) {
+    write_attribute(object, name, text);
+    write_attribute(object, checksum_attribute(name), {}, {{text_checksum(text.c_str())}});
 }
 
 void Hdf5Writer::write_attribute(const std::string& object,

@@ -4,6 +4,7 @@
 #include "nlos/containers/hdf5_handle.h"
 #include "nlos/containers/shape.h"
 #include "nlos/containers/stored_number.h"
+#include "nlos/containers/writers/hdf5_storage.h"
 #include "renderer/core/output_file.h"
 
 #include <algorithm>
@@ -17,6 +18,9 @@
 namespace nlos {
 
 /// An HDF5 file being written under a temporary name; finish() puts it in place.
+///
+/// Checksums guard arrays (see hdf5_storage.h), headers (by the library) and texts
+/// (text_checksum.h).
 ///
 /// Writes that fail (disk full) throw core::Failure and leave an older file as it was.
 class Hdf5Writer {
@@ -33,7 +37,6 @@ class Hdf5Writer {
     void write_real(const std::string& name, double value);             ///< scalar float64
     void write_bool(const std::string& name, bool value);               ///< as h5py writes a bool
     void write_text(const std::string& name, const std::string& text);  ///< UTF-8, any length
-
     void write_null(const std::string& name);  ///< what h5py calls Empty and y-tal None
 
     /// A named value as h5py writes an enumeration: shape (1,), on 32-bit integers.
@@ -45,9 +48,8 @@ class Hdf5Writer {
     /// consecutive ranges of the slowest index.
     template <class Fill>
     void write_rows(const std::string& name, const Shape& shape, Fill&& fill) {
-        constexpr std::size_t kValuesPerWrite = std::size_t{1} << 22;
         const std::size_t row_values = values_per_row(shape);
-        const std::size_t step = std::max<std::size_t>(1, kValuesPerWrite / row_values);
+        const std::size_t step = rows_of_write(shape, sizeof(float));
         const Hdf5Handle dataset = create_float_dataset(name, shape);
         std::vector<float> values;
         for (std::size_t first = 0; first < shape[0]; first += step) {
@@ -81,6 +83,10 @@ class Hdf5Writer {
     void write_attribute(const std::string& object,
                          const std::string& name,
                          const std::string& text);
+    /// And beside it its checksum, see text_checksum.h.
+    void write_guarded_attribute(const std::string& object,
+                                 const std::string& name,
+                                 const std::string& text);
     void write_attribute(const std::string& object,
                          const std::string& name,
                          const Shape& shape,
@@ -105,7 +111,7 @@ class Hdf5Writer {
                          const std::vector<float>& values);
     void write_dataset(const std::string& name,
                        std::int64_t type,
-                       const Hdf5Handle& space,
+                       const Shape& shape,
                        const void* values);
     void write_attribute_values(const std::string& object,
                                 const std::string& name,
