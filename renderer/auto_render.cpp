@@ -2,7 +2,9 @@
 #include "renderer/auto_render.h"
 
 #include "renderer/bounce_truncation.h"
+#include "renderer/ellipsoidal_render.h"
 #include "renderer/estimators.h"
+#include "renderer/light_range.h"
 #include "renderer/path_render.h"
 #include "renderer/smoothed_render.h"
 #include "renderer/third_bounce/third_bounce.h"
@@ -20,6 +22,7 @@ constexpr double kIntegratorsTime = 0.25;
 struct Plan {
     bool traces = false;    ///< paths, beside the integrator
     bool averages = false;  ///< what paths give over neighbours
+    bool connects = false;  ///< paths by their length
     double left_out = 0.0;  ///< relative L2 over all of H of orders that are not computed
 };
 
@@ -72,10 +75,27 @@ RenderSettings settings_of_paths(RenderSettings settings, double seconds_of_inte
     return settings;
 }
 
-std::vector<OrderSource> sources_of_third_bounces(const Surfaces& surfaces) {
+// Whether so little light falls within the time axis that paths had better be made to fit it: walks
+// waste what is outside, connections take several times as long (renderer/RESULTS.md, gates).
+// Walks from pixels meet light paths that all of them share, which serves wider gates, too.
+bool is_narrow(const RenderTask& task) {
+    constexpr double kNarrowForScans = 0.15;
+    constexpr double kNarrowForImages = 0.02;
+    if (task.axes.velocity) return false;
+    const auto range = find_light_range(task.scene, task.scan, task.settings);
+    const core::TimeAxis& axis = task.axes.time;
+    return range && !range->is_dark() &&
+           range->share_between(axis.opl_start_m, axis.opl_end_m()) <
+               (task.scan.has_wall() ? kNarrowForScans : kNarrowForImages);
+}
+
+std::vector<OrderSource> sources_of_third_bounces(const Surfaces& surfaces, const Plan& plan) {
     if (!surfaces.narrow_lobes) return {{3, 3, Estimator::ThirdBounce, "all"}};
     return {{3, 3, Estimator::ThirdBounce, "all but narrow glossy lobes and dielectrics"},
-            {3, 3, Estimator::Path, "narrow glossy lobes and dielectrics"}};
+            {3,
+             3,
+             plan.connects ? Estimator::Ellipsoidal : Estimator::Path,
+             "narrow glossy lobes and dielectrics"}};
 }
 
 void add_third_bounces(const ThirdBounce& third, const Plan& plan, RenderResult& result) {
@@ -106,13 +126,14 @@ RenderResult integrate_and_trace(const RenderTask& task, const Plan& plan) {
                           settings_of_paths(task.settings, third.seconds),
                           progress};
     const PrecomputedPart precomputed{&third.transient, third.squared_error, plan.left_out};
-    RenderResult result = plan.traces ? trace_paths(rest,
-                                                    ThirdBounceScope::NotIntegrable,
-                                                    precomputed,
-                                                    plan.averages ? render_smoothed : render_passes)
+    RenderResult result = plan.traces ? (plan.connects ? trace_connections : trace_paths)(
+                                            rest,
+                                            ThirdBounceScope::NotIntegrable,
+                                            precomputed,
+                                            plan.averages ? render_smoothed : render_passes)
                                       : render_passes(rest, {nullptr, precomputed});
     add_third_bounces(third, plan, result);
-    const auto sources = sources_of_third_bounces(surfaces_of(task.scene));
+    const auto sources = sources_of_third_bounces(surfaces_of(task.scene), plan);
     result.sources.insert(result.sources.begin(), sources.begin(), sources.end());
     return result;
 }
@@ -127,11 +148,12 @@ RenderResult render_auto(const RenderTask& whole) {
     const Surfaces surfaces = surfaces_of(task.scene);
     plan.traces = surfaces.narrow_lobes || task.settings.max_bounces > 3;
     plan.averages = plan.traces && may_average(task.settings, surfaces);
+    const bool integrates = can_integrate(task);
+    plan.connects = (plan.traces || !integrates) && is_narrow(task);
     RenderResult result =
-        can_integrate(task)
-            ? integrate_and_trace(task, plan)
-            : trace_paths(
-                  task, ThirdBounceScope::All, {nullptr, 0.0, plan.left_out}, render_passes);
+        integrates ? integrate_and_trace(task, plan)
+                   : (plan.connects ? trace_connections : trace_paths)(
+                         task, ThirdBounceScope::All, {nullptr, 0.0, plan.left_out}, render_passes);
     result.left_out = left_out;
     return result;
 }

@@ -94,22 +94,33 @@ void warn_of_dropped_signal(const RenderTask& task, const RenderResult& result) 
 }
 
 RenderResult render_ellipsoidal(const RenderTask& task) {
+    return trace_connections(task, ThirdBounceScope::All, {}, render_passes);
+}
+
+RenderResult trace_connections(const RenderTask& task,
+                               ThirdBounceScope scope,
+                               const PrecomputedPart& precomputed,
+                               RenderResult (*render)(const RenderTask&, const PassWork&)) {
     const bool drops = task.settings.exclude == Exclusion::Drop;
-    const int first = first_order(task.scan);
-    PassWork work;
-    if (task.settings.max_bounces >= first) {
+    const int first = scope == ThirdBounceScope::All ? first_order(task.scan) : 4;
+    PassWork work{nullptr, precomputed};
+    if (task.settings.max_bounces >= first_order(task.scan)) {
         work.tracer = std::make_shared<const EllipsoidalTracer>(
             task.scene,
             task.scan,
             task.axes.time,
             task.settings,
-            drops ? ConnectionScope::Kept : ConnectionScope::All);
+            drops ? ConnectionScope::Kept : ConnectionScope::All,
+            scope);
     }
-    RenderResult result = render_passes(task, work);
+    RenderResult result = render(task, work);
     if (work.tracer == nullptr) return result;
     result.excluded = ExcludedFacets::of(task.scene, task.axes.time, task.settings).objects;
     const std::string surfaces = surfaces_kept(task.settings, result.excluded);
-    result.sources.push_back({first, task.settings.max_bounces, Estimator::Ellipsoidal, surfaces});
+    if (task.settings.max_bounces >= first) {
+        result.sources.push_back(
+            {first, task.settings.max_bounces, Estimator::Ellipsoidal, surfaces});
+    }
     warn_of_dropped_signal(task, result);
     return result;
 }

@@ -11,6 +11,12 @@ namespace renderer {
 /// warn_of_dropped_signal().
 RenderResult render_ellipsoidal(const RenderTask& task);
 
+/// The same with the third bounces of `scope` alone beside all higher orders, as trace_paths().
+RenderResult trace_connections(const RenderTask& task,
+                               ThirdBounceScope scope,
+                               const PrecomputedPart& precomputed,
+                               RenderResult (*render)(const RenderTask&, const PassWork&));
+
 /// The signal of the excluded surfaces, by path tracing them alone.
 struct DroppedSignal {
     double lost = 0.0;   ///< sum over the measured pairs and all bins

@@ -87,8 +87,9 @@ EllipsoidalTracer::EllipsoidalTracer(const Scene& scene,
                                      const core::Scan& scan,
                                      const core::TimeAxis& axis,
                                      const RenderSettings& settings,
-                                     ConnectionScope scope)
-    : Tracer(scene, settings, ThirdBounceScope::All),
+                                     ConnectionScope scope,
+                                     ThirdBounceScope third_bounces)
+    : Tracer(scene, settings, third_bounces),
       scope_(scope),
       lengths_(lengths_of_gate(axis, settings.gate)),
       excluded_(ExcludedFacets::of(scene, axis, settings)),
@@ -120,9 +121,11 @@ void EllipsoidalTracer::Walk::trace_samples(int count) {
 void EllipsoidalTracer::Walk::cut_hierarchy(int num_samples) {
     const OplBand lengths{tracer_.lengths_.low_m - ends_.device_legs_m,
                           tracer_.lengths_.high_m - ends_.device_legs_m};
-    cut_.rebuild(connection_ends(ends_),
-                 lengths,
-                 std::max(kMinEntries, static_cast<std::size_t>(num_samples)));
+    if (tracer_.facet_traits_.any_adds()) {
+        cut_.rebuild(connection_ends(ends_),
+                     lengths,
+                     std::max(kMinEntries, static_cast<std::size_t>(num_samples)));
+    }
     if (!cut_.empty()) ellipsoidal_share_ = ellipsoidal_share(cut_.share_asked());
     walk_weight_ = 1.0 / (num_samples * (1.0 - ellipsoidal_share_));
 }

@@ -23,11 +23,13 @@ class EllipsoidalTracer : public Tracer {
     /// scene   must outlive the tracer
     /// scan    where sensors and lights may be
     /// axis    its span, extended by a shaped gate, is the range of lengths asked for
+    /// third_bounces   which of them are added, beside all higher orders
     EllipsoidalTracer(const Scene& scene,
                       const core::Scan& scan,
                       const core::TimeAxis& axis,
                       const RenderSettings& settings,
-                      ConnectionScope scope);
+                      ConnectionScope scope,
+                      ThirdBounceScope third_bounces = ThirdBounceScope::All);
 
  private:
     std::unique_ptr<PairWalk> start(const PathEndpoints& ends,

@@ -45,6 +45,7 @@ FacetTraits::FacetTraits(const Scene& scene, const std::vector<bool>& adds_third
     for (std::uint32_t i = 0; i < scene.facets().size(); ++i) {
         is_hidden_[i] = scene.is_hidden(i) ? 1.0 : 0.0;
         if (!adds_third_bounce[scene.facet(i).object]) continue;
+        any_adds_ = true;
         const Material& material = scene.object_of(i).material;
         const auto constant = constant_value(make_bsdf(material));
         if (constant && !material.albedo_texture) {

@@ -27,12 +27,15 @@ class FacetTraits {
     /// Whether the BSDF depends on directions or place; then constant() is 0.
     bool varies(std::uint32_t facet) const { return varies_[facet] != 0; }
     bool any_varies() const { return any_varies_; }
+    /// Whether any surface adds third bounces.
+    bool any_adds() const { return any_adds_; }
 
  private:
     std::vector<double> is_hidden_;
     std::vector<double> constant_;
     std::vector<char> varies_;
     bool any_varies_ = false;
+    bool any_adds_ = false;
 };
 
 /// The first vertices after the sensor of many paths of one pair, evaluated together: plain arrays

@@ -86,6 +86,14 @@ std::vector<Task> all_tasks() {
     };
     add("velocities", [](auto& d) { d.velocity_axis = core::VelocityAxis{-16.0, 4.0, 8, false}; });
     add("four bounces", [](auto& d) { d.render.max_bounces = 4; });
+    add("narrow gate", [](auto& d) {
+        d.time_axis = {{1.72, 0.04, 1}};
+        d.render.max_bounces = 4;
+    });
+    add("narrow axis", [](auto& d) {
+        d.time_axis = {{1.72, 0.02, 3}};
+        d.render.max_bounces = 4;
+    });
     add("by_order", [](auto& d) { d.render.by_order = true; });
     add("variance", [](auto& d) { d.render.variance = true; });
     add("target_error", [](auto& d) { d.render.target_error = kTarget; });
@@ -100,7 +108,11 @@ std::vector<Task> all_tasks() {
     objects[0].material.roughness = 0.15;
     glossy.scene = std::make_shared<const renderer::Scene>(
         renderer::SceneGeometry{objects, {}}, list, renderer::RelayWall{});
-    tasks.push_back(std::move(glossy));
+    tasks.push_back(glossy);
+    glossy.name = "narrow lobes in a narrow gate";
+    glossy.description.time_axis = {{1.72, 0.04, 1}};
+    glossy.description.render.max_bounces = 4;
+    tasks.push_back(glossy);
     return tasks;
 }
 
@@ -185,6 +197,26 @@ TEST_P(Estimators, RenderTheSameOrNameOneThatCan) {
         for (const auto& [other, own_text] : refusals) {
             const std::string allowed = text.substr(text.find("must be"));
             EXPECT_EQ(allowed.find(other), std::string::npos) << text << ": so " << own_text;
+        }
+    }
+}
+
+// Paths by `auto` are made to fit the axis where little of the light does.
+TEST(Auto, ConnectsByLengthWhereTheAxisIsNarrow) {
+    for (Task& task : all_tasks()) {
+        if (task.description.render.max_bounces != 4 || task.name == "four bounces") continue;
+        for (const bool narrow : {true, false}) {
+            if (!narrow) task.description.time_axis = {{1.0, 0.5, 4}};
+            const auto result = renderer::render(*task.scene,
+                                                 task.scan,
+                                                 {task.description.time_axis, {}},
+                                                 task.description.render,
+                                                 {});
+            const auto expected = narrow ? Estimator::Ellipsoidal : Estimator::Path;
+            ASSERT_EQ(result.sources.size(), task.name.starts_with("narrow lobes") ? 3U : 2U);
+            EXPECT_EQ(result.sources.front().estimator, Estimator::ThirdBounce) << task.name;
+            EXPECT_EQ(result.sources.back().estimator, expected) << task.name;
+            EXPECT_EQ(result.sources.back().first_order, 4) << task.name;
         }
     }
 }
