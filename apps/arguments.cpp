@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
 
+#include "renderer/core/file_suffix.h"
 #include "renderer/core/json_file.h"
 
 #include <fmt/core.h>
@@ -112,7 +113,7 @@ std::string& command_line() {
 }
 
 void require_suffix(const std::string& path, const std::vector<std::string>& suffixes) {
-    const std::string found = std::filesystem::path(path).extension().string();
+    const std::string found = core::file_suffix(path);
     if (path.empty() || std::find(suffixes.begin(), suffixes.end(), found) != suffixes.end())
         return;
     throw core::Error(path,

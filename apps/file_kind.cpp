@@ -5,14 +5,28 @@
 #include "calib/track/track_file.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
+#include "renderer/core/file_suffix.h"
 #include "renderer/core/json_file.h"
 #include "renderer/mesh_file/mesh_file.h"
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 
 namespace apps {
 
 namespace {
+
+/// Any of these, which captures of others do not have, makes a scene.
+constexpr std::array kSceneKeys{
+    "geometry", "objects", "relay_wall", "scan", "camera", "time_axis", "render"};
+
+bool holds_lists(const core::Json& json) {
+    return json.is_array() ||
+           (json.is_object() && std::ranges::any_of(json, [](const core::Json& member) {
+                return holds_lists(member);
+            }));
+}
 
 FileKind kind_of_json(const std::string& path) {
     const core::Json json = core::read_json_file(path);
@@ -26,9 +40,10 @@ FileKind kind_of_json(const std::string& path) {
     if (has("direct_returns", "commands")) return FileKind::Setup;
     if (has("points_m", "opl_offset_m")) return FileKind::Calibration;
     if (has("scene", "grid") || has("headline", "runs")) return FileKind::Sweep;
-    const bool is_scene = json.is_object() && (json.contains("geometry") || json.contains("scan"));
-    if (!is_scene && nlos::capture_format(path)) return FileKind::Capture;
-    return FileKind::Scene;
+    const bool is_scene = json.is_object() && std::ranges::any_of(kSceneKeys, [&](const char* key) {
+                              return json.contains(key);
+                          });
+    return is_scene || !holds_lists(json) ? FileKind::Scene : FileKind::Capture;
 }
 
 }  // namespace
@@ -40,7 +55,7 @@ FileKind kind_of_file(const std::string& path) {
                           "must be a capture, volume, fit, scene.json, glTF, OBJ, PLY or STL file");
     }
     if (std::filesystem::is_directory(path)) return FileKind::Capture;
-    const std::string suffix = std::filesystem::path(path).extension().string();
+    const std::string suffix = core::file_suffix(path);
     if (suffix == ".json") return kind_of_json(path);
     if (suffix == ".ply") return FileKind::PointCloud;
     if (suffix == ".glb" || suffix == ".gltf" || renderer::is_mesh_file(path)) {

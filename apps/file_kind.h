@@ -20,9 +20,9 @@ enum class FileKind {
     Capture
 };
 
-/// What a file is, by suffix and content; JSON that is nothing else counts as a scene and any other
-/// unknown file as a capture, whose readers then say what they expect. Throws core::Error when
-/// there is no such file.
+/// What a file is, by suffix and content; JSON without lists that is nothing else counts as a scene
+/// and any other unknown file as a capture, whose readers then say what they expect. Throws
+/// core::Error when there is no such file.
 FileKind kind_of_file(const std::string& path);
 
 }  // namespace apps

@@ -9,6 +9,7 @@
 #include "nlos/layouts/layout_guess.h"
 #include "nlos/preparation/capture_check.h"
 #include "renderer/core/capture/recorded_detector.h"
+#include "renderer/core/file_suffix.h"
 #include "renderer/core/mesh_formats/mesh_formats.h"
 #include "renderer/core/settings_json.h"
 
@@ -101,7 +102,10 @@ void describe_ply(std::string& out, const std::string& path) {
 /// A file in no known format or layout: what it holds and what that could mean.
 void describe_unknown(std::string& out, const std::string& path) {
     const nlos::LayoutGuess guess = nlos::guess_layout(path);
-    add_line(out, "format: no known capture; arrays:");
+    add_line(out,
+             "format: {}; arrays:",
+             core::file_suffix(path) == ".json" ? "neither a scene nor a known capture"
+                                                : "no known capture");
     for (const std::string& line : guess.arrays) add_line(out, "  {}", line);
     add_line(out, "what could be what:");
     for (const std::string& line : guess.findings) add_line(out, "  {}", line);

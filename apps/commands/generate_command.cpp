@@ -114,18 +114,30 @@ void make(const GenerateArguments& arguments) {
         shares_text(result.profile));
 }
 
-void verify(const std::string& folder) {
+/// Whether the items that runs were asked for, or those of --items, are there and undamaged.
+void verify(const std::string& folder, const std::string& items) {
     const ProgressBar bar("generate --verify");
-    const DatasetIndex index = read_dataset(folder, ShardCheck::Contents);
+    const WantedItems wanted =
+        items.empty() ? WantedItems(AskedItems()) : WantedItems(read_range(items));
+    const DatasetIndex index = read_dataset(folder, ShardCheck::Contents, wanted);
     for (const std::string& doubt : index.doubts) warn(doubt);
-    outcome()["items"] = index.items;
+    outcome()["items"] = index.wanted;
+    outcome()["items_in_all"] = index.items;
     outcome()["shards"] = index.shards.size();
     outcome()["problems"] = index.problems;
     for (const std::string& problem : index.problems) print("{}\n", problem);
     if (!index.problems.empty()) {
         throw core::Failure(folder, fmt::format("has {} problems", index.problems.size()));
     }
-    print("{} is whole: {} items in {} shards\n", folder, index.items, index.shards.size());
+    print("{} is whole: {} items in {} shards{}\n",
+          folder,
+          index.wanted,
+          index.shards.size(),
+          index.wanted < index.items
+              ? fmt::format("; the other {} were {}",
+                            index.items - index.wanted,
+                            items.empty() ? "not asked for so far" : "not looked at")
+              : "");
 }
 
 void merge(const std::string& folder) {
@@ -139,7 +151,7 @@ void merge(const std::string& folder) {
 }
 
 void run(const GenerateArguments& arguments) {
-    if (!arguments.verify.empty()) return verify(arguments.verify);
+    if (!arguments.verify.empty()) return verify(arguments.verify, arguments.items);
     if (!arguments.merge.empty()) return merge(arguments.merge);
     if (arguments.recipe.empty() || arguments.folder.empty()) {
         throw core::Error("nlos generate",
@@ -161,9 +173,14 @@ void declare_generate(Command& command) {
     command.add_option(
         "--items",
         arguments.items,
-        "A:B: make only the items from A to B - 1; not by two processes at once within a shard");
+        "A:B: make, or verify, only the items from A to B - 1; not made by two processes at once "
+        "within a shard");
     add_shorthands(command, kGenerateShorthands, arguments.overrides);
-    add_folder_option(command, "--verify", arguments.verify, "Check every shard of this folder");
+    add_folder_option(
+        command,
+        "--verify",
+        arguments.verify,
+        "Check the shards of this folder: of all items that were asked for, or of --items");
     add_folder_option(command, "--merge", arguments.merge, "Write index.json of this folder");
     arguments.slurm_option =
         command

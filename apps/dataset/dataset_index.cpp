@@ -18,36 +18,52 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kHistogramBins = 32;
 
-/// The shard of some number, or what is wrong with it.
-struct ShardState {
-    std::optional<Manifest> manifest;
-    std::optional<std::string> problem;
-};
-
-ShardState inspect(const DatasetIndex& index,
-                   const std::string& folder,
-                   std::uint64_t shard,
-                   const ItemRange& wanted,
-                   ShardCheck check) {
-    ShardState state{read_manifest(manifest_path(folder, shard)), std::nullopt};
-    const std::string name = shard_name(shard);
-    if (!state.manifest) {
-        state.problem = name + " is missing";
-    } else if (state.manifest->fingerprint != index.fingerprint) {
-        state.problem = name + " belongs to another recipe";
-    } else if (!(state.manifest->items == wanted)) {
-        const ItemRange& items = state.manifest->items;
-        state.problem = fmt::format("{} holds the items {} to {} instead of {} to {}",
-                                    name,
-                                    items.begin,
-                                    items.end - 1,
-                                    wanted.begin,
-                                    wanted.end - 1);
-    } else {
-        state.problem = check == ShardCheck::Contents ? find_damage(*state.manifest, folder)
-                                                      : find_wrong_size(*state.manifest, folder);
+/// Looks at the manifest of a shard, which must hold the items wanted of it.
+std::optional<std::string> find_problem(const DatasetIndex& index,
+                                        const std::string& folder,
+                                        const std::string& name,
+                                        const std::optional<Manifest>& manifest,
+                                        const ItemRange& wanted,
+                                        ShardCheck check) {
+    if (!manifest) return name + " is missing";
+    if (manifest->fingerprint != index.fingerprint) return name + " belongs to another recipe";
+    const ItemRange& items = manifest->items;
+    if (!items.contains(wanted)) {
+        return fmt::format("{} holds the items {} to {} instead of {} to {}",
+                           name,
+                           items.begin,
+                           items.end - 1,
+                           wanted.begin,
+                           wanted.end - 1);
     }
-    return state;
+    return check == ShardCheck::Contents ? find_damage(*manifest, folder)
+                                         : find_wrong_size(*manifest, folder);
+}
+
+/// The ranges that make up the wanted items.
+std::vector<ItemRange> wanted_ranges(const WantedItems& wanted,
+                                     const ItemRange& all,
+                                     const std::vector<std::optional<Manifest>>& manifests) {
+    if (const auto* range = std::get_if<ItemRange>(&wanted)) return {*range};
+    std::vector<ItemRange> asked;
+    if (std::holds_alternative<AskedItems>(wanted)) {
+        for (const auto& manifest : manifests) {
+            if (manifest) asked.push_back(manifest->asked.value_or(all));
+        }
+    }
+    return asked.empty() ? std::vector{all} : asked;
+}
+
+/// What of a shard is wanted: from the first item of any range to the last; nothing when none is.
+std::optional<ItemRange> wanted_of(const ItemRange& shard, const std::vector<ItemRange>& ranges) {
+    std::optional<ItemRange> wanted;
+    for (const ItemRange& range : ranges) {
+        const ItemRange part{std::max(range.begin, shard.begin), std::min(range.end, shard.end)};
+        if (part.begin >= part.end) continue;
+        if (!wanted) wanted = part;
+        wanted = {std::min(wanted->begin, part.begin), std::max(wanted->end, part.end)};
+    }
+    return wanted;
 }
 
 void add_programs(DatasetIndex& index) {
@@ -62,7 +78,7 @@ void add_programs(DatasetIndex& index) {
 
 }  // namespace
 
-DatasetIndex read_dataset(const std::string& folder, ShardCheck check) {
+DatasetIndex read_dataset(const std::string& folder, ShardCheck check, const WantedItems& wanted) {
     const std::string path = (fs::path(folder) / "recipe.json").string();
     std::error_code ignored;
     if (!fs::exists(path, ignored)) {
@@ -83,15 +99,33 @@ DatasetIndex read_dataset(const std::string& folder, ShardCheck check) {
     if (per_shard == 0 || index.items == 0 || index.items / per_shard > kMostShards) {
         throw core::Error(path, "is no recipe of a data set", "must be what nlos generate wrote");
     }
+    const ItemRange all{0, index.items};
+    const auto* range = std::get_if<ItemRange>(&wanted);
+    if (range != nullptr && !all.contains(*range)) {
+        throw core::Error("items",
+                          fmt::format("found {} to {}", range->begin, range->end),
+                          fmt::format("must lie within 0 to {}", all.end));
+    }
     const std::uint64_t count = (index.items + per_shard - 1) / per_shard;
-    std::vector<ShardState> states(count);
+    std::vector<std::optional<Manifest>> manifests(count);
     core::parallel_for(count, [&](std::size_t shard) {
-        const ItemRange wanted{shard * per_shard, std::min(index.items, (shard + 1) * per_shard)};
-        states[shard] = inspect(index, folder, shard, wanted, check);
+        manifests[shard] = read_manifest(manifest_path(folder, shard));
     });
-    for (ShardState& state : states) {
-        if (state.problem) index.problems.push_back(core::printable(*state.problem));
-        if (state.manifest) index.shards.push_back(std::move(*state.manifest));
+    const std::vector<ItemRange> ranges = wanted_ranges(wanted, all, manifests);
+    std::vector<std::optional<ItemRange>> parts(count);
+    std::vector<std::optional<std::string>> problems(count);
+    core::parallel_for(count, [&](std::size_t shard) {
+        const ItemRange items{shard * per_shard, std::min(index.items, (shard + 1) * per_shard)};
+        parts[shard] = wanted_of(items, ranges);
+        if (!parts[shard]) return;
+        problems[shard] =
+            find_problem(index, folder, shard_name(shard), manifests[shard], *parts[shard], check);
+    });
+    for (std::uint64_t shard = 0; shard < count; ++shard) {
+        if (!parts[shard]) continue;
+        index.wanted += parts[shard]->size();
+        if (problems[shard]) index.problems.push_back(core::printable(*problems[shard]));
+        if (manifests[shard]) index.shards.push_back(std::move(*manifests[shard]));
     }
     add_programs(index);
     return index;

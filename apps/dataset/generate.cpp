@@ -168,12 +168,13 @@ ItemRange Dataset::items_of(std::uint64_t shard) const {
     return {begin, std::min(recipe_.items, begin + recipe_.items_per_shard)};
 }
 
-void Dataset::claim_folder(const core::Progress& progress) {
+bool Dataset::claim_folder(const core::Progress& progress) {
     std::error_code error;
     fs::create_directories(folder_, error);
     if (error) throw core::Error(folder_, error.message(), "must be a folder, or a place for one");
     const std::string path = (fs::path(folder_) / kRecipeFile).string();
-    if (!fs::exists(path, error)) {
+    const bool is_new = !fs::exists(path, error);
+    if (is_new) {
         use_tolerance(find_element_tolerance(recipe_, meshes_, progress));
         write_claim(path);
     }
@@ -196,6 +197,7 @@ void Dataset::claim_folder(const core::Progress& progress) {
                           "must be that of at most as many as are asked for: they can only grow");
     }
     if (items < recipe_.items) core::write_text_file(path, claim());
+    return is_new;
 }
 
 std::string Dataset::claim() const {
@@ -223,21 +225,22 @@ void Dataset::write_claim(const std::string& path) const {
     fs::remove(own, ignored);
 }
 
-GenerateResult generate(Dataset& dataset,
-                        const WorkShare& share,
-                        const std::optional<ItemRange>& items,
-                        const std::string& program,
-                        const core::Progress& progress) {
+void Dataset::give_up_folder() const {
+    std::error_code ignored;
+    fs::remove(fs::path(folder_) / kRecipeFile, ignored);
+}
+
+namespace {
+
+/// Makes what is missing of some items; all, unless these are named.
+void make_missing(Dataset& dataset,
+                  const WorkShare& share,
+                  const std::optional<ItemRange>& items,
+                  const std::string& program,
+                  const core::Progress& progress,
+                  GenerateResult& result) {
     const core::Stopwatch clock;
-    dataset.claim_folder(progress);
-    GenerateResult result;
-    const ItemRange all{0, dataset.recipe().items};
-    const ItemRange wanted = items.value_or(all);
-    if (wanted.begin >= wanted.end || !all.contains(wanted)) {
-        throw core::Error("items",
-                          fmt::format("found {} to {}", wanted.begin, wanted.end),
-                          fmt::format("must rise within 0 to {}", all.end));
-    }
+    const ItemRange wanted = items.value_or(ItemRange{0, dataset.recipe().items});
     const auto missing = find_missing(dataset, share, wanted, result.shards_there);
     std::uint64_t total = 0;
     for (const MissingShard& shard : missing) total += shard.items.size();
@@ -245,7 +248,7 @@ GenerateResult generate(Dataset& dataset,
     core::Progress stopping;
     stopping.stop_requested = progress.stop_requested;
     for (const MissingShard& shard : missing) {
-        const auto manifest = make_shard(dataset, shard.shard, shard.items, program, stopping, [&] {
+        auto manifest = make_shard(dataset, shard.shard, shard.items, program, stopping, [&] {
             ++done;
             progress.update(
                 static_cast<double>(done) / static_cast<double>(total),
@@ -256,10 +259,37 @@ GenerateResult generate(Dataset& dataset,
             result.interrupted = true;
             break;
         }
+        manifest->asked = items;
         write_manifest(*manifest, manifest_path(dataset.folder(), shard.shard));
         ++result.shards_written;
         result.items_written += manifest->items.size();
         result.add(*manifest);
+    }
+}
+
+}  // namespace
+
+GenerateResult generate(Dataset& dataset,
+                        const WorkShare& share,
+                        const std::optional<ItemRange>& items,
+                        const std::string& program,
+                        const core::Progress& progress) {
+    const core::Stopwatch clock;
+    const ItemRange all{0, dataset.recipe().items};
+    const ItemRange wanted = items.value_or(all);
+    if (wanted.begin >= wanted.end || !all.contains(wanted)) {
+        throw core::Error("items",
+                          fmt::format("found {} to {}", wanted.begin, wanted.end),
+                          fmt::format("must rise within 0 to {}", all.end));
+    }
+    const bool is_new = dataset.claim_folder(progress);
+    GenerateResult result;
+    try {
+        make_missing(dataset, share, items, program, progress, result);
+    } catch (const core::Error&) {
+        // The recipe is at fault: once mended it is another one, which may have this folder.
+        if (is_new && result.shards_written + result.shards_there == 0) dataset.give_up_folder();
+        throw;
     }
     result.seconds = clock.seconds();
     return result;

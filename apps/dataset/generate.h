@@ -32,9 +32,12 @@ class Dataset {
     /// Writes the recipe, and what find_element_tolerance() says of it, into the folder, which it
     /// makes; a folder that was claimed before is asked instead.
     ///
+    /// returns  whether nobody had claimed it before
     /// throws   core::Error when the folder holds another data set, or one of more items;
     ///          core::Failure when asked to stop
-    void claim_folder(const core::Progress& progress);
+    bool claim_folder(const core::Progress& progress);
+    /// Takes the claim back.
+    void give_up_folder() const;
 
     MeshLibrary& meshes() { return meshes_; }
 

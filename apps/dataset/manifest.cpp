@@ -16,12 +16,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Reads every field, which throws where one lacks or is of another type.
+/// Reads every field, which throws where one lacks that need not or is of another type.
 template <core::SettingsStruct Fields>
 void read_whole(const core::Json& json, Fields& fields) {
     for_each_field(fields, [&]<class Field>(const char* name, Field& field, const char*) {
         if constexpr (core::SettingsStruct<Field>) {
             read_whole(json.at(name), field);
+        } else if constexpr (std::is_same_v<Field, std::optional<ItemRange>>) {
+            if (json.contains(name) && !json.at(name).is_null())
+                field = json.at(name).get<ItemRange>();
         } else {
             json.at(name).get_to(field);
         }

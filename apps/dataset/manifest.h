@@ -27,6 +27,7 @@ struct Manifest : ItemTotals {
     std::string program;
     std::string file;  ///< name of the shard, in the same folder
     ItemRange items;
+    std::optional<ItemRange> asked;  ///< of the run that made it; nothing: all
     std::uint64_t bytes = 0;
     std::string checksum;
     double seconds = 0.0;  ///< of the wall clock
@@ -39,6 +40,7 @@ void for_each_field(Manifest& m, Visitor&& visit) {
     visit("program", m.program, "that made it");
     visit("file", m.file, "name of the shard");
     visit("items", m.items, "first, and one past the last");
+    visit("asked", m.asked, "the items that the run was asked for; null: all");
     visit("bytes", m.bytes, "of the file");
     visit("xxh128", m.checksum, "XXH3 of 128 bits, as `xxh128sum` prints it");
     visit("seconds", m.seconds, "of the wall clock");

@@ -9,7 +9,13 @@ namespace python {
 namespace nb = nanobind;
 
 nb::object numbers_from(nb::handle value, const char* dtype, const std::string& name) {
-    const nb::object array = nb::module_::import_("numpy").attr("asarray")(value);
+    const nb::module_ numpy = nb::module_::import_("numpy");
+    if (nb::cast<bool>(numpy.attr("ma").attr("is_masked")(value))) {
+        throw core::Error(name,
+                          "is a masked array, and nothing here keeps its mask",
+                          "must be a plain array, such as its filled(0)");
+    }
+    const nb::object array = numpy.attr("asarray")(value);
     const auto kind = nb::cast<std::string>(array.attr("dtype").attr("kind"));
     const bool is_whole = kind == "u" || kind == "i";
     const bool wants_whole = dtype[0] == 'i';

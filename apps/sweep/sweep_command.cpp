@@ -57,6 +57,9 @@ void print_summary(const SweepPlan& plan, const core::Json& rows, const SweepArg
           path,
           rows.size(),
           summary.num_failed > 0 ? fmt::format(", {} of them failed", summary.num_failed) : "");
+    if (summary.num_failed == rows.size()) {
+        throw core::Failure("sweep", fmt::format("all of its {} runs failed", rows.size()));
+    }
 }
 
 void run(const SweepArguments& arguments) {

@@ -12,14 +12,38 @@
 namespace nlos {
 namespace {
 
-void check_same_shape(const core::Transient& found, const core::Transient& wanted) {
-    if (found.num_pairs() == wanted.num_pairs() && found.num_bins() == wanted.num_bins()) return;
+std::string points_text(const core::WallPoints& points) {
+    if (!points.grid) return fmt::format("{} points", points.size());
+    return fmt::format("{} x {} points", (*points.grid)[0], (*points.grid)[1]);
+}
+
+/// Pattern, points and bins: what tells scans apart.
+std::string scan_text(const core::Capture& capture) {
+    const std::string bins = fmt::format("{} bins", capture.transient.num_bins());
+    return capture.scan.visit(
+        [&](const core::WallScan& scan) {
+            const std::string lit =
+                scan.is_confocal() ? ""
+                                   : fmt::format(" lit from {}", points_text(scan.illumination));
+            return fmt::format("a {} scan of {}{} and {}",
+                               core::enum_name(scan.pattern),
+                               points_text(scan.sensing),
+                               lit,
+                               bins);
+        },
+        [&](const core::ImageScan& image) {
+            const auto pixels = image.pair_extents();
+            return fmt::format("an image of {} x {} pixels and {}", pixels[0], pixels[1], bins);
+        });
+}
+
+void check_same_shape(const core::Capture& found, const core::Capture& wanted) {
+    if (found.transient.num_pairs() == wanted.transient.num_pairs() &&
+        found.transient.num_bins() == wanted.transient.num_bins()) {
+        return;
+    }
     throw core::Error("compare: H",
-                      fmt::format("found {} pairs x {} bins against {} x {}",
-                                  found.num_pairs(),
-                                  found.num_bins(),
-                                  wanted.num_pairs(),
-                                  wanted.num_bins()),
+                      fmt::format("found {} against {}", scan_text(found), scan_text(wanted)),
                       "both captures must have the same shape");
 }
 
@@ -89,7 +113,7 @@ void keep(const core::BinRange& range, std::span<float> histogram) {
 }  // namespace
 
 Metrics compare_captures(const core::Capture& result, const core::Capture& reference) {
-    check_same_shape(result.transient, reference.transient);
+    check_same_shape(result, reference);
     check_same_unit(result.unit, reference.unit);
     check_same_bins(result.time_axis, reference.time_axis);
     Metrics metrics;

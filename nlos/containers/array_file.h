@@ -68,9 +68,10 @@ class ArrayFile {
 };
 
 /// A kind of file. To add one: write a .cpp with a function that returns its row, and list that
-/// function in array_file.cpp.
+/// function in array_file.cpp. Files that nobody can read as they are, though they are often taken
+/// for captures, are kinds too: `open` throws what is to be done.
 struct Container {
-    const char* content;  ///< for messages about files of other kinds: "HDF5"
+    const char* content;  ///< for messages about files of other kinds: "HDF5"; null: never read
 
     /// True when a regular file starts like one of this kind, be it damaged further on.
     bool (*recognise)(const std::string& path);
@@ -85,6 +86,9 @@ std::unique_ptr<ArrayFile> open_as(const std::string& path) {
 
 /// All kinds, in the order in which a file is tried.
 const std::vector<Container>& containers();
+
+/// The kind of a file by its content; null when it is of none, or no regular file.
+const Container* find_container(const std::string& path);
 
 /// How many rows of an array make a read of some megabytes.
 std::size_t rows_of_read(const Shape& shape);

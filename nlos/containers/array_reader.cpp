@@ -44,6 +44,18 @@ std::optional<ArrayDescription> description_from_json(const Json& json) {
     return description;
 }
 
+/// How to store what an array of such a type holds so that it can be read; nothing for other types.
+std::optional<std::string> how_to_store(const std::string& type, const std::string& name) {
+    if (type == "sparse") return fmt::format("must be a full array: {0} = full({0})", name);
+    if (type == "cell") {
+        return fmt::format("must be an array of numbers, such as cat(3, {0}{{:}})", name);
+    }
+    if (type == "structured" || type == "compound") {
+        return fmt::format("must be an array of numbers, such as one of its fields: {}['a']", name);
+    }
+    return std::nullopt;
+}
+
 std::string answer(const ArrayFile& file, const Json& request) {
     const std::string what = request.at(0);
     if (what == "read") {
@@ -63,16 +75,6 @@ std::string answer(const ArrayFile& file, const Json& request) {
     return bytes;
 }
 
-/// Nothing when a file is of no known kind or no regular file.
-const Container* find_container(const std::string& path) {
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored)) return nullptr;
-    for (const Container& container : containers()) {
-        if (container.recognise(path)) return &container;
-    }
-    return nullptr;
-}
-
 const Container& known_container(const std::string& path) {
     if (const Container* container = find_container(path)) return *container;
     if (!std::filesystem::exists(path)) {
@@ -80,6 +82,7 @@ const Container& known_container(const std::string& path) {
     }
     std::string known;
     for (const Container& container : containers()) {
+        if (container.content == nullptr) continue;
         known += (known.empty() ? "" : ", ") + std::string(container.content);
     }
     throw core::Error(path, "is no file of arrays", "must be " + known);
@@ -127,10 +130,10 @@ const std::optional<ArrayDescription>& ArrayReader::describe(const std::string& 
 }
 
 const ArrayDescription& ArrayReader::describe_array(const std::string& name) const {
-    if (!has(name)) {
-        throw core::Error(where(name), "is missing or empty", "must be an array with values");
-    }
-    return *describe(name);
+    if (has(name)) return *describe(name);
+    const auto hint = has_object(name) ? how_to_store(type(name), name) : std::nullopt;
+    if (hint) throw core::Error(where(name), "is a " + type(name) + " array", *hint);
+    throw core::Error(where(name), "is missing or empty", "must be an array with values");
 }
 
 bool ArrayReader::has_object(const std::string& name) const {
@@ -160,7 +163,7 @@ void ArrayReader::require_numeric(const std::string& name) const {
         throw core::Error(
             where(name),
             found == ElementKind::Text ? "holds text" : "holds no plain numbers: " + type(name),
-            "must hold real numbers");
+            how_to_store(type(name), name).value_or("must hold real numbers"));
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/stored_array.h"
 #include "renderer/core/error.h"
+#include "renderer/core/file_suffix.h"
 #include "renderer/core/mapped_file.h"
 
 #include <fmt/core.h>
@@ -127,7 +128,7 @@ class CsvFile : public StoredArrayFile {
 
 /// Text of which nothing but its suffix says that it is a table.
 bool is_csv_file(const std::string& path) {
-    const std::string suffix = std::filesystem::path(path).extension().string();
+    const std::string suffix = core::file_suffix(path);
     if (suffix != ".csv" && suffix != ".tsv" && suffix != ".txt") return false;
     return core::first_bytes(path, 1024).find('\0') == std::string::npos;
 }

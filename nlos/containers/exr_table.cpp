@@ -198,8 +198,8 @@ void write_exr_table(const std::string& path, const ExrTable& table) {
         Imf::OutputFile file(output.temporary().c_str(), header);
         file.setFrameBuffer(buffer);
         file.writePixels(static_cast<int>(table.height));
-    } catch (const std::exception& error) {
-        throw core::Failure(path, std::string("cannot be written (") + error.what() + ")");
+    } catch (const std::exception&) {
+        throw core::Failure(path, "cannot be written (disk full?)");
     }
     output.commit();
 }

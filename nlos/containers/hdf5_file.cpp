@@ -2,6 +2,7 @@
 #include "nlos/containers/hdf5_file.h"
 
 #include "nlos/containers/file_memory.h"
+#include "nlos/containers/hdf5_filters.h"
 #include "renderer/core/error.h"
 #include "renderer/core/json_file.h"
 
@@ -239,6 +240,7 @@ ArrayDescription Hdf5File::describe_object(const Hdf5Handle& object,
     description.shape = shape;
     description.kind = kind_of(type);
     if (description.kind == ElementKind::Text && (shape.empty() || shape == Shape{1})) {
+        require_filters(object, path_, name);
         if (!chunk_of(object, shape.size()).empty()) check_size(object, shape, where(name));
         description.text = fetch_text(type, where(name), [&](hid_t memory, void* target) {
             return H5Dread(object.id(), memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, target) >= 0;
@@ -315,6 +317,7 @@ std::string Hdf5File::read(const std::string& name, const WantedRows& rows) cons
     const Hdf5Handle dataset = open_object(name);
     const Hdf5Handle space(H5Dget_space(dataset.id()), H5Sclose);
     Shape shape = extents_of(space, where(name));
+    require_filters(dataset, path_, name);
     check_size(dataset, shape, where(name));
     const Hdf5Handle memory = select_rows(space, rows.first, rows.count);
     if (!shape.empty()) shape[0] = rows.count;

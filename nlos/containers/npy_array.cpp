@@ -67,6 +67,20 @@ class HeaderText {
         }
         return shape;
     }
+    /// Skips a list, whatever is in it: the fields of a structured type.
+    void skip_list() {
+        std::size_t depth = 0;
+        do {
+            const char found = next();
+            if (found == '\'' || found == '"') {
+                take_quoted();
+                continue;
+            }
+            depth += found == '[' ? 1U : 0U;
+            depth -= found == ']' ? 1U : 0U;
+            text_.remove_prefix(1);
+        } while (depth > 0);
+    }
     [[noreturn]] void damaged() const {
         throw core::Error(where_, "has a damaged header", "must be a .npy array");
     }
@@ -121,9 +135,8 @@ void take_dictionary(HeaderText& text, NpyHeader& header) {
         text.expect(':');
         if (key == "descr" && text.next() == '[') {
             header.array.type = "structured";
-            return;  // whose shape is of no use
-        }
-        if (key == "descr") {
+            text.skip_list();
+        } else if (key == "descr") {
             take_type(text.take_quoted(), text, header);
         } else if (key == "fortran_order") {
             header.array.first_axis_fastest = text.take_bool();

@@ -231,7 +231,8 @@ core::Capture detect(const core::Capture& capture, const DetectorSettings& setti
             record(detector,
                    pair,
                    frame,
-                   capture.observed_range(pair),
+                   core::observed_range(
+                       capture.observed_in_frame(frame), pair, capture.time_axis.num_bins),
                    light.histogram(pair),
                    counts.histogram(pair));
         });
@@ -241,7 +242,8 @@ core::Capture detect(const core::Capture& capture, const DetectorSettings& setti
         result.transient = record_frame(0, capture.transient);
         return result;
     }
-    result.sequence = {{}, capture.sequence->gate_step_m, capture.sequence->frame_s};
+    result.sequence = capture.sequence;
+    result.sequence->frames.clear();
     for (const core::Transient& light : capture.sequence->frames) {
         result.sequence->frames.push_back(record_frame(result.sequence->frames.size(), light));
     }

@@ -79,12 +79,12 @@ void move_histograms(const CaptureReadSettings& settings,
         move("velocity", capture.velocity->values, 1);
         if (capture.velocity->variance) move("velocity_variance", *capture.velocity->variance, 1);
     }
-    if (capture.observed) {
-        const std::vector<core::BinRange> stored = *capture.observed;
+    core::for_each_observed(capture, [&](std::vector<core::BinRange>& ranges) {
+        const std::vector<core::BinRange> stored = ranges;
         for (std::size_t pair = 0; pair < stored.size(); ++pair) {
-            (*capture.observed)[pair] = stored[stored_pair(pair)];
+            ranges[pair] = stored[stored_pair(pair)];
         }
-    }
+    });
     std::string told;
     for (const auto& [is_set, name] : {std::pair(settings.swap_xy, "capture.swap_xy"),
                                        std::pair(settings.flip_x, "capture.flip_x"),
@@ -102,12 +102,10 @@ void reverse_time(Capture& capture) {
             std::ranges::reverse(values.subspan(begin, bins));
         }
     });
-    if (capture.observed) {
-        const int num_bins = capture.time_axis.num_bins;
-        for (core::BinRange& range : *capture.observed) {
-            range = {num_bins - range.end, num_bins - range.begin};
-        }
-    }
+    const int num_bins = capture.time_axis.num_bins;
+    core::for_each_observed(capture, [&](std::vector<core::BinRange>& ranges) {
+        for (core::BinRange& range : ranges) range = {num_bins - range.end, num_bins - range.begin};
+    });
     capture.notes.emplace_back("histograms are reversed in time by capture.flip_t");
 }
 

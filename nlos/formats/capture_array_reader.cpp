@@ -76,22 +76,31 @@ core::Transient read_transient(const ArrayReader& file,
     return transient;
 }
 
-/// The bins of each pair that were observed; validate() checks them against the axis and H.
-void read_observed_bins(const ArrayReader& file, const std::string& name, Capture& capture) {
-    Shape wanted = file.shape("H");
-    wanted[0] = 2;
-    require_shape(file, name, wanted);
-    const std::vector<double> bins = file.read_doubles(name, wanted);
-    const std::size_t num_pairs = bins.size() / 2;
+/// The bins of each pair that were observed, of so many frames; validate() checks them against the
+/// axis and histograms.
+///
+/// shape   of the array
+std::vector<core::ObservedBins> read_observed_bins(const ArrayReader& file,
+                                                   const std::string& name,
+                                                   const Shape& shape,
+                                                   std::size_t num_frames) {
+    require_shape(file, name, shape);
+    const std::vector<double> bins = file.read_doubles(name, shape);
     for (const double bin : bins) {
         if (bin == std::trunc(bin) && std::abs(bin) <= std::numeric_limits<int>::max()) continue;
         throw Error(file.where(name), fmt::format("found {}", bin), "must be bin numbers");
     }
-    std::vector<core::BinRange>& observed = capture.observed.emplace();
-    for (std::size_t pair = 0; pair < num_pairs; ++pair) {
-        observed.push_back(
-            {static_cast<int>(bins[pair]), static_cast<int>(bins[num_pairs + pair])});
+    const std::size_t num_pairs = bins.size() / (2 * num_frames);
+    std::vector<core::ObservedBins> observed(num_frames);
+    for (std::size_t frame = 0; frame < num_frames; ++frame) {
+        std::vector<core::BinRange>& ranges = observed[frame].emplace();
+        const double* const begins = bins.data() + 2 * num_pairs * frame;
+        for (std::size_t pair = 0; pair < num_pairs; ++pair) {
+            ranges.push_back(
+                {static_cast<int>(begins[pair]), static_cast<int>(begins[num_pairs + pair])});
+        }
     }
+    return observed;
 }
 
 /// Reads several transients stored as one array, each of them as H.
@@ -139,10 +148,21 @@ double checked_scale(double counts_per_radiance, const std::string& where) {
 
 void read_optional_arrays(const ArrayReader& file, const std::string& prefix, Capture& capture) {
     const auto name = [&](const char* array) { return prefix + array; };
-    if (file.has(name("observed_bins"))) read_observed_bins(file, name("observed_bins"), capture);
+    Shape ranges = file.shape("H");
+    ranges[0] = 2;
+    if (file.has(name("observed_bins"))) {
+        capture.observed = read_observed_bins(file, name("observed_bins"), ranges, 1).front();
+    }
     if (file.has(name("H_by_order"))) read_orders(file, prefix, capture);
     if (file.has(name("frames"))) {
-        capture.sequence.emplace().frames = read_stack(file, name("frames"), capture);
+        const std::size_t count =
+            capture.sequence.emplace(core::FrameSequence{read_stack(file, name("frames"), capture)})
+                .frames.size();
+        ranges.insert(ranges.begin(), count);
+        if (count > 0 && file.has(name("frames_observed_bins"))) {
+            capture.sequence->observed =
+                read_observed_bins(file, name("frames_observed_bins"), ranges, count);
+        }
     }
     if (!file.has(name("variance"))) return;
     require_shape(file, name("variance"), file.shape("H"));

@@ -57,6 +57,20 @@ std::vector<int> observed_array(const std::vector<core::BinRange>& observed) {
     return bins;
 }
 
+std::vector<int> observed_array_of_frames(const core::Capture& capture) {
+    std::vector<int> bins;
+    for (std::size_t frame = 0; frame < capture.sequence->frames.size(); ++frame) {
+        std::vector<core::BinRange> ranges;
+        for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
+            ranges.push_back(core::observed_range(
+                capture.observed_in_frame(frame), pair, capture.time_axis.num_bins));
+        }
+        const std::vector<int> of_frame = observed_array(ranges);
+        bins.insert(bins.end(), of_frame.begin(), of_frame.end());
+    }
+    return bins;
+}
+
 namespace {
 
 /// Visits bins [first, first + count) of all pairs, each with its place in rows with time slowest:

@@ -32,6 +32,9 @@ core::Json scene_info_of(const core::Capture& capture);
 /// after their last ones. H holds 0 in all others, which means that nobody looked.
 std::vector<int> observed_array(const std::vector<core::BinRange>& observed);
 
+/// The array frames_observed_bins of shape (F, 2, pairs...): the same of each frame of a sequence.
+std::vector<int> observed_array_of_frames(const core::Capture& capture);
+
 /// Copies bins [first, first + count) of [pair][bin] to rows with time slowest.
 void copy_rows(const core::Transient& transient, std::size_t first, std::size_t count, float* rows);
 

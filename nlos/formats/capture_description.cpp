@@ -50,6 +50,22 @@ std::string describe_observed(const core::Capture& capture) {
     return text;
 }
 
+/// How the observed bins of frames move.
+std::string describe_observed_frames(const core::Capture& capture) {
+    const auto hull = [&](const core::ObservedBins& observed) {
+        return core::observed_hull(observed, capture.time_axis.num_bins);
+    };
+    const core::BinRange first = hull(capture.sequence->observed.front());
+    const core::BinRange last = hull(capture.sequence->observed.back());
+    return fmt::format(
+        "each frame has its own observed bins: {} to {} in the first, {} to {} in "
+        "the last",
+        first.begin,
+        first.end - 1,
+        last.begin,
+        last.end - 1);
+}
+
 /// How many points there are, and their largest extents along x, y and z.
 std::string describe_points(const char* kind, const core::WallPoints& points) {
     Eigen::AlignedBox3d box;
@@ -134,6 +150,9 @@ std::vector<std::string> describe_capture(const core::Capture& capture) {
                         capture.sequence->frames.size(),
                         capture.sequence->frame_s,
                         capture.sequence->gate_step_m));
+    }
+    if (capture.sequence && !capture.sequence->observed.empty()) {
+        lines.push_back(describe_observed_frames(capture));
     }
     lines.push_back(describe_values(capture));
     if (capture.counts_per_radiance) {

@@ -7,6 +7,7 @@
 #include "nlos/layouts/layout_capture.h"
 #include "nlos/layouts/layout_guess.h"
 #include "renderer/core/error.h"
+#include "renderer/core/file_suffix.h"
 #include "renderer/core/json_file.h"
 #include "renderer/core/settings.h"
 
@@ -71,7 +72,7 @@ std::string first_container(const std::string& path) {
 
 /// What of ours a file is that is no capture, as messages call it; empty for any other.
 std::string other_file_of_ours(const std::string& path) {
-    const std::string suffix = std::filesystem::path(path).extension().string();
+    const std::string suffix = core::file_suffix(path);
     for (const char* mesh : {".glb", ".gltf", ".obj", ".ply", ".stl"}) {
         if (suffix == mesh) return "a mesh";
     }
@@ -121,7 +122,7 @@ bool has_suffix(const CaptureWriter& writer, const std::string& suffix) {
 
 /// How to write by the suffix of `path` and the layout that is asked for.
 const CaptureWriter& find_writer(const std::string& path, const std::string& layout) {
-    const std::string suffix = std::filesystem::path(path).extension().string();
+    const std::string suffix = core::file_suffix(path);
     std::vector<std::string> layouts;
     std::vector<std::string> suffixes;
     for (const CaptureWriter& writer : capture_writers()) {
@@ -154,6 +155,7 @@ void take_frame(int frame, const std::string& path, core::Capture& capture) {
     const auto later = static_cast<double>(count - 1 - static_cast<std::size_t>(frame));
     capture.time_axis.opl_start_m -= later * capture.sequence->gate_step_m;
     capture.transient = capture.sequence->frames[static_cast<std::size_t>(frame)];
+    capture.observed = capture.observed_in_frame(static_cast<std::size_t>(frame));
     capture.sequence.reset();
 }
 

@@ -97,6 +97,12 @@ bool write_own_group(Hdf5Writer& file,
         write_stack(file, "nlos/frames", h_shape, capture.sequence->frames);
         file.write_attribute("nlos/frames", kGateStep, {1}, {{capture.sequence->gate_step_m}});
         file.write_attribute("nlos/frames", kFrameTime, {1}, {{capture.sequence->frame_s}});
+        if (!capture.sequence->observed.empty()) {
+            Shape shape = h_shape;
+            shape[0] = 2;
+            shape.insert(shape.begin(), capture.sequence->frames.size());
+            file.write("nlos/frames_observed_bins", shape, observed_array_of_frames(capture));
+        }
     }
     return has_own;
 }

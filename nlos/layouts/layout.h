@@ -200,7 +200,7 @@ struct LayoutPoints {
     std::string array;                                ///< coordinates, along an axis of extent 3
     std::vector<std::string> axes;                    ///< of array, "xyz" for the coordinates
     std::vector<std::string> columns{"x", "y", "z"};  ///< which coordinate each is; "-x" negates
-    std::vector<std::string> list_order;  ///< how a list runs over a grid, slowest axis first
+    std::vector<std::string> list_order;  ///< how a list runs over two axes, slowest axis first
     std::string x;                        ///< arrays of one coordinate each, z = 0
     std::string y;
     LayoutNumber pitch_m;   ///< given: the arrays hold indices, these times it are metres
@@ -218,7 +218,7 @@ void for_each_field(LayoutPoints& p, Visitor&& visit) {
     visit("array", p.array, "or an array of points, coordinates along an axis of extent 3");
     visit("axes", p.axes, "its axes, xyz for the coordinates");
     visit("columns", p.columns, "which coordinate each column is; -x negates");
-    visit("list_order", p.list_order, "how a list runs over a grid, slowest axis first");
+    visit("list_order", p.list_order, "how a list runs over two axes, slowest axis first");
     visit("x", p.x, "or an array of x");
     visit("y", p.y, "and one of y");
     visit("pitch_m", p.pitch_m, "the arrays hold indices, distance of neighbours [m]");

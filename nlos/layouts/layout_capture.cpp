@@ -58,6 +58,12 @@ void read_devices(const LayoutFiles& files,
     scan.opl_origin = included ? core::OplOrigin::Device : core::OplOrigin::RelayWall;
 }
 
+/// Keeps the observed bins of frames that do not all have those of the last, the capture's own.
+void keep_observed(std::vector<core::ObservedBins> observed, Capture& capture) {
+    if (std::ranges::count(observed, observed.back()) == std::ssize(observed)) return;
+    capture.sequence->observed = std::move(observed);
+}
+
 void keep_frames(std::vector<core::Transient> frames, Capture& capture) {
     capture.transient = frames.back();
     if (frames.size() == 1) return;
@@ -175,6 +181,7 @@ Capture read_layout_capture(const LayoutSource& source, const CaptureReadSetting
         return read_one(source.files[wanted], source.layout, of_file);
     }
     std::vector<core::Transient> frames;
+    std::vector<core::ObservedBins> observed;
     Capture capture;
     for (const std::string& file : source.files) {
         Capture frame = read_one(file, source.layout, settings);
@@ -189,9 +196,11 @@ Capture read_layout_capture(const LayoutSource& source, const CaptureReadSetting
                             frames[0].num_bins()));
         }
         frames.push_back(frame.transient);
+        observed.push_back(frame.observed);
         capture = std::move(frame);
     }
     keep_frames(std::move(frames), capture);
+    keep_observed(std::move(observed), capture);
     capture.notes.push_back(fmt::format(
         "{} files are frames; the wall points are those of the last", source.files.size()));
     return capture;

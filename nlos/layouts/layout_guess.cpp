@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/layouts/layout_guess.h"
 
+#include "nlos/layouts/array_list.h"
+#include "nlos/layouts/histogram_evidence.h"
 #include "nlos/layouts/layout_histograms.h"
 #include "renderer/core/error.h"
 #include "renderer/core/json_file.h"
@@ -20,10 +22,6 @@ namespace {
 
 using core::Json;
 
-constexpr std::size_t kMostListed = 200;
-constexpr std::size_t kFewestTimeBins = 16;
-constexpr std::size_t kMostRead = std::size_t{1} << 22;  // values, for a range in the list
-
 std::size_t count_of(const Shape& shape) {
     return total_bytes(shape, 1);
 }
@@ -31,54 +29,6 @@ std::size_t count_of(const Shape& shape) {
 bool is_numeric(const ArrayReader& file, const std::string& name) {
     const ElementKind kind = file.kind(name);
     return kind == ElementKind::Integer || kind == ElementKind::Real;
-}
-
-std::string shown(const std::string& text) {
-    constexpr std::size_t kLongest = 60;
-    const std::string first = text.substr(0, std::min(text.find('\n'), kLongest));
-    return first.size() < text.size() ? first + " ..." : first;
-}
-
-std::string describe_array(const LayoutFiles& files, const std::string& name) {
-    const ArrayReader& file = files.main();
-    std::string line = fmt::format("{}: {}", name, file.type(name));
-    if (file.kind(name) == ElementKind::Text)
-        return line + " \"" + shown(file.read_text(name)) + "\"";
-    const Shape shape = files.shape(name);
-    line += " " + shape_text(shape);
-    if (!is_numeric(file, name) || count_of(shape) == 0 || count_of(shape) > kMostRead) return line;
-    const std::vector<double> values = files.read(name);
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    return values.size() == 1 ? fmt::format("{}: {:.6g}", line, *low)
-                              : fmt::format("{}, {:.6g} to {:.6g}", line, *low, *high);
-}
-
-/// A line for each array; of cells one stands for all.
-std::vector<std::string> list_arrays(const LayoutFiles& files) {
-    std::vector<std::string> lines;
-    std::string last_cell;
-    std::size_t alike = 0;
-    const auto count_alike = [&] {
-        if (alike > 0) lines.back() += fmt::format("; and {} more such cells", alike);
-        alike = 0;
-    };
-    for (const std::string& name : files.main().names()) {
-        const std::size_t brace = name.find('{');
-        const std::string cell = brace == std::string::npos ? "" : name.substr(0, brace);
-        if (!cell.empty() && cell == last_cell) {
-            ++alike;
-            continue;
-        }
-        count_alike();
-        last_cell = cell;
-        if (lines.size() == kMostListed) {
-            lines.emplace_back("...");
-            break;
-        }
-        if (files.main().has(name)) lines.push_back(describe_array(files, name));
-    }
-    count_alike();
-    return lines;
 }
 
 /// Names of numeric arrays, the largest first.
@@ -91,46 +41,6 @@ std::vector<std::string> numeric_arrays(const LayoutFiles& files) {
         return count_of(files.shape(a)) > count_of(files.shape(b));
     });
     return names;
-}
-
-struct ArrayStatistics {
-    /// How much the energy varies along each axis: standard deviation over mean of the sum of
-    /// absolute values at each index, in the writer's order of axes.
-    std::vector<double> variation;
-    bool are_whole_numbers = true;
-};
-
-ArrayStatistics statistics_of(const LayoutFiles& files, const std::string& name) {
-    ArrayStatistics statistics;
-    const Shape shape = files.shape(name);
-    std::vector<std::vector<double>> energy;
-    for (const std::size_t extent : shape) energy.emplace_back(extent, 0.0);
-    std::vector<std::size_t> fastest(shape.size());
-    std::iota(fastest.begin(), fastest.end(), std::size_t{0});
-    if (!files.first_index_fastest(name)) std::reverse(fastest.begin(), fastest.end());
-    std::vector<std::size_t> index(shape.size(), 0);
-    files.read_runs(name, [&](const std::vector<float>& values) {
-        for (const float value : values) {
-            if (value != std::trunc(value)) statistics.are_whole_numbers = false;
-            if (std::isfinite(value)) {
-                for (std::size_t axis = 0; axis < shape.size(); ++axis) {
-                    energy[axis][index[axis]] += std::abs(value);
-                }
-            }
-            for (const std::size_t axis : fastest) {
-                if (++index[axis] < shape[axis]) break;
-                index[axis] = 0;
-            }
-        }
-    });
-    for (const auto& sums : energy) {
-        const double n = static_cast<double>(sums.size());
-        const double mean = std::accumulate(sums.begin(), sums.end(), 0.0) / n;
-        double variance = 0.0;
-        for (const double sum : sums) variance += (sum - mean) * (sum - mean) / n;
-        statistics.variation.push_back(mean > 0.0 ? std::sqrt(variance) / mean : 0.0);
-    }
-    return statistics;
 }
 
 /// The scalar whose name holds one of some words and whose value a test accepts.
@@ -219,17 +129,34 @@ void guess_bins(const LayoutFiles& files, LayoutGuess& guess) {
         "open: whether bin 0 begins when light leaves the wall; bins.start_m says otherwise");
 }
 
-void guess_points(const LayoutFiles& files, std::size_t pairs, bool is_list, LayoutGuess& guess) {
+void guess_points(const LayoutFiles& files,
+                  const std::string& histograms,
+                  std::size_t pairs,
+                  bool is_list,
+                  LayoutGuess& guess) {
+    const bool is_matlab = files.first_index_fastest(histograms);
     if (const auto points = find_points(files, pairs)) {
         guess.layout["sensing"] = {{"array", *points}};
         guess.findings.push_back(fmt::format("{} could be the wall points", *points));
         return;
     }
-    if (is_list) {
+    const auto side = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(pairs))));
+    if (is_list && side * side != pairs) {
         guess.layout["sensing"] = {{"array", "?"}};
         guess.findings.push_back(
             "open: the wall points; sensing.array names an array of 3 coordinates each");
         return;
+    }
+    if (is_list) {
+        guess.layout["histogram"]["split"] = {{"axis", "s"},
+                                              {"into", other_axes({side, side}, is_matlab)},
+                                              {"extents", {side, side}}};
+        guess.findings.push_back(fmt::format(
+            "open: whether the {} points are a grid of {} x {}, as histogram.split says; else "
+            "sensing.array names an array of 3 coordinates each",
+            pairs,
+            side,
+            side));
     }
     const auto is_size = [](double value) { return value >= 0.05 && value <= 20.0; };
     Json grid = Json::object();
@@ -248,27 +175,18 @@ void guess_points(const LayoutFiles& files, std::size_t pairs, bool is_list, Lay
     guess.layout["sensing"] = {{"grid", grid}};
 }
 
-/// Histograms have two axes or more, and a list of points has three columns.
+/// Histograms have two axes or more.
 bool could_be_histograms(const Shape& shape) {
-    const auto wide = std::count_if(shape.begin(), shape.end(), [](auto e) { return e > 1; });
-    const bool has_bins =
-        std::any_of(shape.begin(), shape.end(), [](auto e) { return e >= kFewestTimeBins; });
-    const bool is_list_of_points = shape.size() == 2 && (shape.front() == 3 || shape.back() == 3);
-    return wide >= 2 && has_bins && !is_list_of_points;
-}
-
-double second_largest(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values.size() > 1 ? values[values.size() - 2] : 0.0;
+    return std::count_if(shape.begin(), shape.end(), [](auto e) { return e > 1; }) >= 2;
 }
 
 /// A layout around the array `name`.
-void guess_around(const LayoutFiles& files, const std::string& name, LayoutGuess& guess) {
+void guess_around(const LayoutFiles& files,
+                  const std::string& name,
+                  const HistogramEvidence& evidence,
+                  LayoutGuess& guess) {
     const Shape shape = files.shape(name);
-    const ArrayStatistics statistics = statistics_of(files, name);
-    const std::vector<double>& variation = statistics.variation;
-    const auto time = static_cast<std::size_t>(
-        std::max_element(variation.begin(), variation.end()) - variation.begin());
+    const std::size_t time = evidence.time_axis;
     Shape others = shape;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(time));
     std::vector<std::string> axes = other_axes(others, files.first_index_fastest(name));
@@ -283,8 +201,8 @@ void guess_around(const LayoutFiles& files, const std::string& name, LayoutGuess
         fmt::format("axis {} is taken for time: energy varies most along it ({:.2f} of its mean; "
                     "others {:.2f})",
                     time,
-                    variation[time],
-                    second_largest(variation)));
+                    evidence.variation,
+                    evidence.next_variation));
     if (axes.size() == 3) {
         guess.findings.push_back("open: which of the other axes is x, and how each runs");
     }
@@ -294,7 +212,7 @@ void guess_around(const LayoutFiles& files, const std::string& name, LayoutGuess
     guess.layout["recognise"]["containers"] = {files.main().container()};
     guess.layout["recognise"]["arrays"][name] = shape.size();
     guess.layout["histogram"] = {{"array", {name}}, {"axes", axes}};
-    guess.layout["histogram"]["unit"] = statistics.are_whole_numbers ? "counts" : "radiance";
+    guess.layout["histogram"]["unit"] = evidence.are_whole_numbers ? "counts" : "radiance";
     guess_bins(files, guess);
     guess.layout["pattern"] = has_lights ? "exhaustive" : "confocal";
     guess.findings.push_back(
@@ -306,8 +224,31 @@ void guess_around(const LayoutFiles& files, const std::string& name, LayoutGuess
         const bool counts = axes[i] == "x" || axes[i] == "y" || axes[i] == "s";
         if (counts) pairs *= shape[i];
     }
-    guess_points(files, pairs, is_list, guess);
+    guess_points(files, name, pairs, is_list, guess);
     if (has_lights) guess.layout["illumination"] = guess.layout["sensing"];
+}
+
+/// Takes an array for the histograms unless something speaks against it, which is noted.
+bool guess_by(const LayoutFiles& files, const std::string& name, LayoutGuess& guess) {
+    constexpr std::size_t kMostNoted = 8;
+    if (!could_be_histograms(files.shape(name))) return false;
+    HistogramEvidence evidence;
+    try {
+        evidence = weigh_as_histograms(files, name);
+    } catch (const core::Error& error) {
+        evidence.why_not = reason_of(error, name);
+    }
+    if (evidence.why_not.empty()) {
+        guess_around(files, name, evidence, guess);
+        return true;
+    }
+    if (guess.findings.size() < kMostNoted) {
+        guess.findings.push_back(fmt::format("{} {} is hardly histograms: {}",
+                                             name,
+                                             shape_text(files.shape(name)),
+                                             evidence.why_not));
+    }
+    return false;
 }
 
 }  // namespace
@@ -317,12 +258,10 @@ LayoutGuess guess_layout(const std::string& path) {
     LayoutGuess guess;
     guess.arrays = list_arrays(files);
     for (const std::string& name : numeric_arrays(files)) {
-        if (!could_be_histograms(files.shape(name))) continue;
-        guess_around(files, name, guess);
-        break;
+        if (guess_by(files, name, guess)) break;
     }
     if (guess.layout.is_null()) {
-        guess.findings.push_back("no array has the two axes or more that histograms need");
+        guess.findings.push_back("no array could be histograms, which have two axes or more");
     }
     guess.nearest = nearest_layouts(path);
     return guess;

@@ -16,8 +16,8 @@ struct LayoutGuess {
     core::Json layout;                  ///< a layout to be completed; null without histograms
 };
 
-/// Looks at every array of a file. The array with most values along axes that fit is taken for the
-/// histograms, and the axis along which its energy varies most for time.
+/// Looks at every array of a file. The largest one against which nothing speaks is taken for the
+/// histograms, and the axis along which its light varies most for time; see histogram_evidence.h.
 ///
 /// throws   core::Error when the file is none of named arrays, or damaged
 LayoutGuess guess_layout(const std::string& path);

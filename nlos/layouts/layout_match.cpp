@@ -103,7 +103,9 @@ std::vector<std::string> mismatches(const LayoutFiles& files, const Layout& layo
         lacks.push_back(fmt::format("it is {} instead of {}", container, fmt::join(kinds, ", ")));
     }
     for (const auto& [name, ranks] : wanted.arrays.of) {
-        if (!files.has(name)) {
+        if (!files.has(name) && files.main().has_object(name)) {
+            lacks.push_back(fmt::format("{} is a {}", name, files.main().type(name)));
+        } else if (!files.has(name)) {
             lacks.push_back(fmt::format("no array {}", name));
         } else if (!has_rank(files.shape(name), ranks)) {
             lacks.push_back(fmt::format("{} has shape {} instead of {} axes",

@@ -63,19 +63,25 @@ std::vector<std::string> coordinate_axes(std::vector<std::string> names,
     return names;
 }
 
+/// Whether a list of histograms has its points in two axes, filled up at the end to a full square.
+bool is_folded_list(const LayoutPoints& layout, const PointAxes& axes) {
+    return layout.list_order.size() == 2 && !axes.is_grid();
+}
+
 CoordinateArray read_coordinates(const LayoutFiles& files,
                                  const std::string& array,
-                                 const std::vector<std::string>& layout_axes,
+                                 const LayoutPoints& layout,
                                  const PointAxes& axes) {
     CoordinateArray read;
     read.shape = files.shape(array);
     const std::size_t count = axes.count();
-    if (total_bytes(read.shape, 1) != 3 * count) {
+    const std::uint64_t found = total_bytes(read.shape, 1);
+    if (is_folded_list(layout, axes) ? found < 3 * count : found != 3 * count) {
         refuse_shape(files, array, read.shape, axes);
     }
     read.values = files.read(array);
     read.strides = strides_of(read.shape, files.first_index_fastest(array));
-    read.names = coordinate_axes(layout_axes, read.shape, axes);
+    read.names = coordinate_axes(layout.axes, read.shape, axes);
     // A single point may have any shape; so may trailing extents of 1.
     while (read.names.size() < read.shape.size() && read.shape.back() == 1) read.shape.pop_back();
     if (count == 1) {
@@ -97,6 +103,12 @@ std::size_t offset_of(const CoordinateArray& array,
                       const std::vector<std::string>& list_order,
                       std::size_t entry) {
     if (array.shape.size() == 1) return 0;
+    if (array.shape.size() == 3 && !axes.is_grid()) {
+        const std::size_t slow = array.axis(list_order[0]);
+        const std::size_t fast = array.axis(list_order[1]);
+        return entry / array.shape[fast] * array.strides[slow] +
+               entry % array.shape[fast] * array.strides[fast];
+    }
     if (array.shape.size() == 2 && !axes.is_grid()) {
         const std::size_t along = 1 - array.axis(kCoordinates);
         return entry * array.strides[along];
@@ -137,7 +149,7 @@ std::vector<Vec3> read_vectors(const LayoutFiles& files,
                                const std::string& array,
                                const LayoutPoints& layout,
                                const PointAxes& axes) {
-    const CoordinateArray read = read_coordinates(files, array, layout.axes, axes);
+    const CoordinateArray read = read_coordinates(files, array, layout, axes);
     const std::size_t stride = read.strides[read.axis(kCoordinates)];
     std::vector<Vec3> vectors(axes.count(), Vec3::Zero());
     for (std::size_t entry = 0; entry < vectors.size(); ++entry) {

@@ -3,6 +3,7 @@
 
 #include "nlos/pictures/panel_drawing.h"
 #include "renderer/core/error.h"
+#include "renderer/core/file_suffix.h"
 #include "renderer/core/output_file.h"
 
 #include <algorithm>
@@ -50,7 +51,7 @@ struct PanelLayout {
 }  // namespace
 
 PictureFormat picture_format(const std::string& path) {
-    const std::string suffix = std::filesystem::path(path).extension().string();
+    const std::string suffix = core::file_suffix(path);
     if (suffix == ".png") return PictureFormat::Png;
     if (suffix == ".svg") return PictureFormat::Svg;
     if (suffix == ".pdf") return PictureFormat::Pdf;

@@ -4,6 +4,7 @@
 #include "nlos/preparation/capture_correction.h"
 #include "nlos/preparation/first_light.h"
 #include "nlos/preparation/histogram_preparation.h"
+#include "nlos/preparation/wall_unit.h"
 #include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/core/json_file.h"
 #include "renderer/core/parallel.h"
@@ -260,6 +261,10 @@ std::vector<std::string> capture_warnings(const core::Capture& capture) {
     if (auto warning = cut_light(capture)) warnings.push_back(*warning);
     if (auto warning = wrong_unit(capture)) warnings.push_back(*warning);
     if (!capture.scan.has_wall()) return warnings;
+    if (auto warning = wall_unit_slip(capture)) {
+        warnings.push_back(*warning);
+        return warnings;  // nothing else about the wall makes sense
+    }
     const std::vector<double> ambient = ambient_of(capture);
     const auto early = early_light(capture, ambient);
     if (early && capture.time_axis.opl_start_m < -capture.time_axis.bin_width_m) {

@@ -57,9 +57,23 @@ struct PartialName {
     std::string end;    ///< after it
 };
 
-PartialName partial_name_of(const fs::path& target) {
-    return {"." + target.stem().string() + ".",
-            "-" + machine_tag() + ".partial" + target.extension().string()};
+/// What is written in the end: where symbolic links lead, be there a file or not.
+fs::path written_file(const std::string& target) {
+    constexpr int kMostLinks = 40;
+    fs::path path(target);
+    std::error_code error;
+    for (int i = 0; fs::is_symlink(path, error); ++i) {
+        if (i == kMostLinks) throw Error(target, "is a link to itself", "must lead to a file");
+        const fs::path next = fs::read_symlink(path, error);
+        path = next.is_absolute() ? next : path.parent_path() / next;
+    }
+    return path;
+}
+
+/// target   what is written in the end
+/// suffix   of the name that was asked for, by which libraries go
+PartialName partial_name_of(const fs::path& target, const fs::path& suffix) {
+    return {"." + target.stem().string() + ".", "-" + machine_tag() + ".partial" + suffix.string()};
 }
 
 fs::path folder_of(const fs::path& target) {
@@ -107,12 +121,10 @@ class ListingPause {
     Clock::time_point end_;
 };
 
-/// Removes the partial files of `target` whose process has ended on this machine; not those of
-/// other machines or containers that share the folder, which may live. A folder that takes long to
-/// list is not looked at every time.
-void remove_stale_partial_files(const std::string& target) {
-    const PartialName name = partial_name_of(target);
-    const fs::path folder = folder_of(target);
+/// Removes partial files of a name whose process has ended on this machine; not those of other
+/// machines or containers that share the folder, which may live. A folder that takes long to list
+/// is not looked at every time.
+void remove_stale_partial_files(const fs::path& folder, const PartialName& name) {
     static ListingPause pause;
     if (!pause.is_over(folder)) return;
     const Stopwatch clock;
@@ -148,14 +160,16 @@ void forget_partial_file(const std::string& path) {
 }  // namespace
 
 std::string partial_file_of(const std::string& target) {
-    const PartialName name = partial_name_of(target);
-    return (folder_of(target) / (name.begin + std::to_string(::getpid()) + name.end)).string();
+    const fs::path written = written_file(target);
+    const PartialName name = partial_name_of(written, fs::path(target).extension());
+    return (folder_of(written) / (name.begin + std::to_string(::getpid()) + name.end)).string();
 }
 
-OutputFile::OutputFile(std::string target) : target_(std::move(target)) {
+OutputFile::OutputFile(std::string target)
+    : target_(std::move(target)), written_(written_file(target_).string()) {
     constexpr std::size_t kLongestName = 200;  // file systems take 255, the temporary one is longer
     std::error_code ignored;
-    const fs::path path(target_);
+    const fs::path path(written_);
     if (!fs::is_directory(folder_of(path), ignored)) {
         throw Error(target_, "its folder does not exist", "must be in an existing folder");
     }
@@ -165,7 +179,8 @@ OutputFile::OutputFile(std::string target) : target_(std::move(target)) {
                     "its name has " + std::to_string(bytes) + " bytes",
                     "must have at most " + std::to_string(kLongestName));
     }
-    remove_stale_partial_files(target_);
+    remove_stale_partial_files(folder_of(path),
+                               partial_name_of(path, fs::path(target_).extension()));
     temporary_ = partial_file_of(target_);
     announce_partial_file(temporary_);
     // Only trying tells: root may write where the file system does not.
@@ -188,7 +203,7 @@ OutputFile::~OutputFile() {
 
 void OutputFile::commit() {
     std::error_code error;
-    fs::rename(temporary_, target_, error);
+    fs::rename(temporary_, written_, error);
     if (error) throw Failure(target_, "cannot be written (" + error.message() + ")");
     committed_ = true;
 }

@@ -8,7 +8,8 @@ namespace core {
 
 /// A result file that appears whole or not at all: written under a temporary name beside the
 /// target, renamed by commit(), removed again when commit() is never reached. What a killed run
-/// left of the same target is removed by the next one.
+/// left of the same target is removed by the next one. Symbolic links stay: the file that they lead
+/// to is written.
 class OutputFile {
  public:
     /// Throws Error when the target's folder does not exist or cannot be written, or its name is
@@ -26,6 +27,7 @@ class OutputFile {
 
  private:
     std::string target_;
+    std::string written_;  ///< where symbolic links from the target lead
     std::string temporary_;
     bool committed_ = false;
 };

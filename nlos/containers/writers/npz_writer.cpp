@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/writers/npz_writer.h"
 
+#include "nlos/containers/writers/zip_target.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -162,10 +163,11 @@ class RowMember {
 }  // namespace
 
 NpzWriter::NpzWriter(std::string target)
-    : target_(std::move(target)),
-      output_(std::in_place, target_),
-      archive_(zip_open(output_->temporary().c_str(), ZIP_CREATE | ZIP_TRUNCATE, nullptr),
-               zip_discard) {
+    : target_(std::move(target)), output_(std::in_place, target_), archive_(nullptr, zip_discard) {
+    zip_source_t* file = zip_target(output_->temporary());
+    check(file != nullptr);
+    archive_.reset(zip_open_from_source(file, ZIP_TRUNCATE, nullptr));
+    if (archive_ == nullptr) zip_source_free(file);
     check(archive_ != nullptr);
 }
 

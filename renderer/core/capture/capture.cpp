@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace core {
 namespace {
@@ -61,26 +62,54 @@ void for_each_unobserved(const Values& histogram,
     }
 }
 
-void validate_observed(const Capture& capture, const std::string& where) {
-    if (!capture.observed) return;
-    if (!capture.scan.has_observed_bins()) {
-        throw Error(where + ": observed bins", "found for an image", "must be of a scan's pairs");
+/// Throws unless histograms hold 0 where nothing was observed.
+///
+/// where   prefix of messages, with the histograms' name
+void validate_dark(const ObservedBins& observed,
+                   const Transient& transient,
+                   int num_axes,
+                   const std::string& where) {
+    if (!observed) return;
+    for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
+        const BinRange& range = (*observed)[pair];
+        for_each_unobserved(transient.histogram(pair), range, num_axes, [&](float value) {
+            if (value == 0.0F) return;
+            throw Error(where,
+                        fmt::format("pair {} holds {} beside its observed bins {} to {}",
+                                    pair,
+                                    value,
+                                    range.begin,
+                                    range.end),
+                        "must hold 0 where nothing was observed");
+        });
     }
-    validate_ranges(capture, *capture.observed, where + ": observed bins");
+}
+
+void validate_observed(const Capture& capture, const std::string& where) {
+    const std::string bins = where + ": observed bins";
+    const std::size_t num_frames = capture.sequence ? capture.sequence->frames.size() : 0;
+    const std::size_t num_own = capture.sequence ? capture.sequence->observed.size() : 0;
+    if (!capture.observed && num_own == 0) return;
+    if (!capture.scan.has_observed_bins()) {
+        throw Error(bins, "found for an image", "must be of a scan's pairs");
+    }
+    require(num_own == 0 || num_own == num_frames,
+            bins,
+            fmt::format("those of {} frames", num_own),
+            fmt::format("those of each of {} frames", num_frames));
+    if (capture.observed) validate_ranges(capture, *capture.observed, bins);
+    for (std::size_t frame = 0; frame < num_own; ++frame) {
+        const ObservedBins& observed = capture.observed_in_frame(frame);
+        if (observed)
+            validate_ranges(capture, *observed, fmt::format("{} of frame {}", bins, frame));
+    }
+    std::size_t frame = 0;
     for_each_transient(capture, [&](const char* name, const Transient& transient, int num_axes) {
-        for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
-            const BinRange& range = (*capture.observed)[pair];
-            for_each_unobserved(transient.histogram(pair), range, num_axes, [&](float value) {
-                if (value == 0.0F) return;
-                throw Error(fmt::format("{}: {}", where, name),
-                            fmt::format("pair {} holds {} beside its observed bins {} to {}",
-                                        pair,
-                                        value,
-                                        range.begin,
-                                        range.end),
-                            "must hold 0 where nothing was observed");
-            });
-        }
+        const bool is_frame = std::string_view(name) == "frames";
+        validate_dark(is_frame ? capture.observed_in_frame(frame++) : capture.observed,
+                      transient,
+                      num_axes,
+                      fmt::format("{}: {}", where, name));
     });
 }
 
@@ -96,6 +125,9 @@ void validate(const Capture& capture, const std::string& where) {
         validate(axis, where + ": velocity axis");
         validate_histograms(
             capture, capture.velocity->values, axis.num_values(num_bins), where + ": velocity");
+    }
+    for (const Transient& order : capture.by_order) {
+        validate_histograms(capture, order, num_bins, where + ": H_by_order");
     }
     for (std::size_t i = 0; capture.sequence && i < capture.sequence->frames.size(); ++i) {
         validate_histograms(
@@ -119,12 +151,18 @@ void restrict_observed(Capture& capture, const std::vector<BinRange>& ranges) {
         }
     });
     if (!capture.scan.has_observed_bins()) return;
-    std::vector<BinRange> kept;
-    for (std::size_t pair = 0; pair < ranges.size(); ++pair) {
-        kept.push_back(intersection(ranges[pair], capture.observed_range(pair)));
-    }
-    capture.observed = std::move(kept);
-    simplify(capture.observed, capture.time_axis.num_bins);
+    const int num_bins = capture.time_axis.num_bins;
+    const auto restrict_ranges = [&](ObservedBins& observed) {
+        std::vector<BinRange> kept;
+        for (std::size_t pair = 0; pair < ranges.size(); ++pair) {
+            kept.push_back(intersection(ranges[pair], observed_range(observed, pair, num_bins)));
+        }
+        observed = std::move(kept);
+        simplify(observed, num_bins);
+    };
+    restrict_ranges(capture.observed);
+    if (!capture.sequence) return;
+    for (ObservedBins& observed : capture.sequence->observed) restrict_ranges(observed);
 }
 
 }  // namespace core

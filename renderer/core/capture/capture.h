@@ -27,9 +27,10 @@ struct EnumNames<TransientUnit> {
 
 /// Frames of a gate and of objects that move on from one to the next.
 struct FrameSequence {
-    std::vector<Transient> frames;  ///< the last one is the capture's own transient
-    double gate_step_m = 0.0;       ///< by which the time axis moved per frame
-    double frame_s = 0.0;           ///< in which objects moved on per frame
+    std::vector<Transient> frames;         ///< the last one is the capture's own transient
+    double gate_step_m = 0.0;              ///< by which the time axis moved per frame
+    double frame_s = 0.0;                  ///< in which objects moved on per frame
+    std::vector<ObservedBins> observed{};  ///< of each frame; empty: all have those of the capture
 };
 
 /// What a detector recorded, or a renderer computed: transients and where they belong.
@@ -37,7 +38,7 @@ struct Capture {
     Scan scan;
     TimeAxis time_axis;
     Transient transient;                ///< (num_pairs, num_bins)
-    ObservedBins observed;              ///< of every frame and order; all bins hold 0 elsewhere
+    ObservedBins observed;              ///< all bins hold 0 elsewhere
     std::optional<Transient> variance;  ///< of each value of `transient`, when known
     TransientUnit unit = TransientUnit::Radiance;
     std::optional<double> counts_per_radiance;  ///< when counts stem from known radiance
@@ -52,6 +53,11 @@ struct Capture {
     /// The bins in which the detector could record this pair.
     BinRange observed_range(std::size_t pair) const {
         return core::observed_range(observed, pair, time_axis.num_bins);
+    }
+    /// The observed bins of a frame of the sequence; of a capture without one, its own.
+    const ObservedBins& observed_in_frame(std::size_t frame) const {
+        const bool has_own = sequence && !sequence->observed.empty();
+        return has_own ? sequence->observed[frame] : observed;
     }
     /// What a pair's histogram holds in these bins.
     std::span<const float> observed_values(std::size_t pair) const {
@@ -76,6 +82,16 @@ void for_each_transient(AnyCapture& capture, Visit&& visit) {
     visit("velocity", capture.velocity->values, num_velocities);
     if (capture.velocity->variance) {
         visit("velocity_variance", *capture.velocity->variance, num_velocities);
+    }
+}
+
+/// Visits the observed bins of a capture and, where frames have their own, of each frame.
+template <class Visit>
+void for_each_observed(Capture& capture, Visit&& visit) {
+    if (capture.observed) visit(*capture.observed);
+    if (!capture.sequence) return;
+    for (ObservedBins& observed : capture.sequence->observed) {
+        if (observed) visit(*observed);
     }
 }
 

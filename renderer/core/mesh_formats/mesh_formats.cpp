@@ -2,6 +2,7 @@
 #include "renderer/core/mesh_formats/mesh_formats.h"
 
 #include "renderer/core/error.h"
+#include "renderer/core/file_suffix.h"
 #include "renderer/core/mapped_file.h"
 #include "renderer/core/nearest_name.h"
 #include "renderer/core/process.h"
@@ -11,7 +12,7 @@
 namespace core {
 
 const MeshFormat* mesh_format(const std::string& path) {
-    const std::string suffix = lower_case(std::filesystem::path(path).extension().string());
+    const std::string suffix = file_suffix(path);
     for (const MeshFormat* format : {&kObj, &kPly, &kStl}) {
         if (suffix == format->suffix) return format;
     }
@@ -19,7 +20,8 @@ const MeshFormat* mesh_format(const std::string& path) {
 }
 
 void throw_damaged(const std::string& path, const std::string& found) {
-    throw Error(path, found, std::string("must be a complete ") + mesh_format(path)->name + " file");
+    throw Error(
+        path, found, std::string("must be a complete ") + mesh_format(path)->name + " file");
 }
 
 FileMesh read_mesh_file(const std::string& path) {

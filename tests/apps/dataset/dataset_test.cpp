@@ -286,6 +286,37 @@ TEST(Dataset, SkipsBrokenMeshesAndNamesThem) {
     for (const auto& [name, reason] : result.broken_meshes) EXPECT_FALSE(reason.empty()) << name;
     fs::remove(folder.file("meshes/good.obj"));
     EXPECT_ERROR_WITH(run(folder, recipe, "none"), "none can be used");
+    EXPECT_FALSE(fs::exists(folder.file("none/recipe.json")));
+}
+
+TEST(Dataset, ARefusedRunLeavesTheFolderToAMendedRecipe) {
+    const TemporaryFolder folder;
+    EXPECT_ERROR_WITH(run(folder, tiny_recipe(), "set", {}, ItemRange{8, 11}), "0 to 10");
+    EXPECT_FALSE(fs::exists(folder.file("set/recipe.json")));
+    run(folder, tiny_recipe({{"seed", 9}}), "set");
+    EXPECT_EQ(problems(folder, "set"), std::vector<std::string>{});
+}
+
+TEST(Dataset, PartsAreVerifiedByWhatWasAskedFor) {
+    const TemporaryFolder folder;
+    const auto read_part = [&](const apps::WantedItems& wanted) {
+        return apps::read_dataset(folder.file("set"), apps::ShardCheck::Contents, wanted);
+    };
+    run(folder, tiny_recipe(), "set", {}, ItemRange{0, 2});
+    const apps::DatasetIndex part = read_part(apps::AskedItems());
+    EXPECT_EQ(part.problems, std::vector<std::string>{});
+    EXPECT_EQ(part.wanted, 2u);
+    EXPECT_EQ(part.items, 10u);
+    EXPECT_FALSE(read_part(apps::AllItems()).problems.empty());
+    EXPECT_EQ(read_part(ItemRange{1, 2}).problems, std::vector<std::string>{});
+    EXPECT_FALSE(read_part(ItemRange{1, 9}).problems.empty());
+    EXPECT_ERROR_WITH(read_part(ItemRange{1, 11}), "items: found 1 to 11; must lie within 0 to 10");
+    test_support::write_file_bytes(folder.file("set/shard-00000.h5"), "damaged");
+    EXPECT_FALSE(read_part(apps::AskedItems()).problems.empty());
+    run(folder, tiny_recipe(), "set");
+    EXPECT_EQ(read_part(apps::AskedItems()).wanted, 10u);
+    fs::remove(folder.file("set/shard-00001.json"));
+    EXPECT_FALSE(read_part(apps::AskedItems()).problems.empty());
 }
 
 TEST(Dataset, NamesWhatIsWrongOrMissing) {

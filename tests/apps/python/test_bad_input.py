@@ -45,6 +45,7 @@ CASES = {
     "ragged H": (lambda: make([[1.0], [1.0, 2.0]]), ""),
     "None as H": (lambda: make(None), "H: holds values of type object"),
     "NaN in H": (lambda: make(np.full_like(H, np.nan)), "capture: H"),
+    "masked H": (lambda: make(np.ma.masked_greater(np.cumsum(H).reshape(H.shape), 5)), "H: is a masked array"),
     "infinite H": (lambda: make(np.full_like(H, np.inf)), "capture: H"),
     "NaN written later": (lambda: nlos.reconstruct(with_nan(), "bp"), "capture: H"),
     "points without coordinates": (lambda: make(points=np.zeros((3, 3, 2))), "sensing_points_m: has shape (3, 3, 2)"),

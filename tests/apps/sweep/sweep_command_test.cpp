@@ -81,6 +81,14 @@ TEST_F(SweepCommand, TheReportNamesRunsThatFailed) {
     EXPECT_NE(file_bytes(file("page.html")).find("<b>Run 1</b> failed: "), std::string::npos);
 }
 
+TEST_F(SweepCommand, FailsWhenAllRunsDo) {
+    make_sweep({{"grid", {{"reconstruct.memory_gb", {1e-6, 2e-6}}}}});
+    const Outcome sweep = run("sweep " + file("sweep.json") + " -o " + file("out"));
+    EXPECT_EQ(sweep.status, 1) << sweep.err;
+    EXPECT_NE(sweep.err.find("sweep: all of its 2 runs failed"), std::string::npos) << sweep.err;
+    EXPECT_TRUE(fs::exists(file("out/sweep.json")));
+}
+
 TEST_F(SweepCommand, BadInputIsOneLineBeforeAnythingRuns) {
     make_sweep();
     const std::string sweep = "sweep " + file("sweep.json") + " -o " + file("out");

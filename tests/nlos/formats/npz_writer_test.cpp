@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What stands in .npz files, read by libzip and byte by byte.
+#include "nlos/containers/writers/npz_writer.h"
+
 #include "nlos/formats/capture_file.h"
 #include "renderer/core/json_file.h"
+#include "renderer/core/output_file.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
 #include "tests/support/file_bytes.h"
@@ -11,6 +14,7 @@
 #include <zip.h>
 
 #include <cstring>
+#include <filesystem>
 #include <map>
 
 namespace nlos {
@@ -191,6 +195,20 @@ TEST(NpzWriter, WhatElseACaptureHoldsIsThere) {
     EXPECT_EQ(members.at("frames").values<float>(), stack);
     EXPECT_EQ(members.at("gate_step_m").values<double>(), std::vector<double>{0.02});
     EXPECT_EQ(members.at("frame_s").values<double>(), std::vector<double>{0.04});
+}
+
+TEST(NpzWriter, NothingButItsTemporaryFileIsThereWhileItWrites) {
+    const TemporaryFolder folder;
+    NpzWriter file(folder.file("a.npz"));
+    std::vector<std::string> seen;
+    file.write_rows("H", {4, 2}, [&](std::size_t, std::size_t count, std::vector<float>& values) {
+        values.assign(2 * count, 1.0F);
+        for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+            seen.push_back(entry.path().string());
+        }
+    });
+    file.finish();
+    EXPECT_EQ(seen, std::vector<std::string>{core::partial_file_of(folder.file("a.npz"))});
 }
 
 TEST(NpzWriter, ImagesHaveNoGridsAndTheirCameraInSceneInfo) {

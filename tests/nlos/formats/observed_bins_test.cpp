@@ -54,6 +54,44 @@ TEST(ObservedBinsInFiles, Hdf5HoldsBeginsAndEndsAsPairsStandInH) {
     EXPECT_EQ(bins[24 + 3], 4.0);
 }
 
+/// Two frames whose gates are three bins each, of which the second begins a bin later.
+core::Capture moving_gate_example() {
+    core::Capture capture = example_capture(ScanPattern::Confocal);
+    core::Capture before = capture;
+    core::restrict_observed(before, {0, 3});
+    core::restrict_observed(capture, {1, 4});
+    capture.sequence = core::FrameSequence{
+        {before.transient, capture.transient}, 0.0, 0.04, {before.observed, capture.observed}};
+    return capture;
+}
+
+TEST(ObservedBinsInFiles, FramesKeepTheirOwn) {
+    const core::Capture capture = moving_gate_example();
+    const TemporaryFolder folder;
+    for (const char* name : {"a.h5", "a.npz"}) {
+        write_capture(folder.file(name), capture);
+        const core::Capture read = read_capture(folder.file(name));
+        ASSERT_TRUE(read.sequence) << name;
+        EXPECT_EQ(read.sequence->observed, capture.sequence->observed) << name;
+        EXPECT_EQ(read.observed, capture.observed) << name;
+        CaptureReadSettings settings;
+        settings.frame = 0;
+        EXPECT_EQ(read_capture(folder.file(name), settings).observed_range(2), (BinRange{0, 3}));
+        settings.frame.reset();
+        settings.flip_t = true;
+        EXPECT_EQ((*read_capture(folder.file(name), settings).observed_in_frame(0))[2],
+                  (BinRange{2, 5}));
+    }
+}
+
+TEST(ObservedBinsInFiles, FramesMustBeDarkOutsideTheirOwn) {
+    core::Capture capture = moving_gate_example();
+    capture.sequence->observed.pop_back();
+    EXPECT_ERROR_WITH(validate(capture, "a"), "observed bins: found those of 1 frames");
+    capture.sequence->observed.push_back(capture.sequence->observed[0]);
+    EXPECT_ERROR_WITH(validate(capture, "a"), "a: frames: pair 0 holds");
+}
+
 TEST(ObservedBinsInFiles, OtherFormatsSayThatTheyDropThem) {
     core::Capture capture = example_capture(ScanPattern::Confocal);
     core::restrict_observed(capture, {1, 4});
@@ -120,6 +158,10 @@ TEST(ObservedBinsInFiles, InfoSaysWhichBinsOfHowManyPairs) {
     EXPECT_EQ(line(capture), "observed: parts of bins 1 to 3 of 4 of 6 pairs; 2 not at all");
     core::restrict_observed(capture, {0, 0});
     EXPECT_EQ(line(capture), "observed: no bin of 6 pairs");
+    EXPECT_EQ(std::ranges::count(describe_capture(moving_gate_example()),
+                                 "each frame has its own observed bins: 0 to 2 in the first, 1 to "
+                                 "3 in the last"),
+              1);
 }
 
 }  // namespace

@@ -190,10 +190,13 @@ TEST(Layouts, FramesAreKeptOrChosen) {
     EXPECT_ERROR_WITH(read_capture(example.file(), settings), "capture.frame: found 2");
 }
 
-/// A frame of layout st-vl53l8, four zones of six bins that all hold `value`.
-void write_zones(const std::string& path, double value) {
+/// A frame of layout st-vl53l8, four zones of six bins that all hold `value` from one on.
+void write_zones(const std::string& path, double value, std::size_t first_bin = 0) {
     NpzWriter file(path);
-    const std::vector<double> values(24, value);
+    std::vector<double> values(24, value);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (i % 6 < first_bin) values[i] = 0.0;
+    }
     const std::vector<double> points{0, 0, 1, 0, 1, 1, 1, 0, 1, 1, 1, 1};
     file.write("hists", {4, 6}, values);
     file.write("pt_cloud", {4, 3}, points);
@@ -213,6 +216,21 @@ TEST(Layouts, SeveralFilesAreFramesInTheOrderGiven) {
     CaptureReadSettings settings;
     settings.frame = 0;
     EXPECT_EQ(read_capture(files, settings).transient.histogram(1)[0], 5.0F);
+}
+
+TEST(Layouts, FramesOfAMovingSensorHaveTheirOwnObservedBins) {
+    const TemporaryFolder folder;
+    write_zones(folder.file("a.npz"), 3.0, 2);
+    write_zones(folder.file("b.npz"), 5.0, 1);
+    write_zones(folder.file("c.npz"), 5.0, 3);
+    const core::Capture capture = read_capture(folder.path().string());
+    ASSERT_TRUE(capture.sequence);
+    EXPECT_EQ(capture.observed_range(2), (core::BinRange{3, 6}));
+    for (const auto& [frame, first] : {std::pair(0, 2), std::pair(1, 1), std::pair(2, 3)}) {
+        EXPECT_EQ((*capture.observed_in_frame(static_cast<std::size_t>(frame)))[2],
+                  (core::BinRange{first, 6}));
+    }
+    EXPECT_TRUE(capture.sequence->frames[0].histogram(1)[2] == 3.0F);
 }
 
 TEST(Layouts, SeveralFilesThatAreNoFramesAreRefused) {

@@ -87,6 +87,34 @@ TEST(PointListCapture, OneDetectorIsAnExhaustiveScanWithOneSensingPoint) {
     EXPECT_EQ(capture.unit, core::TransientUnit::Counts);
 }
 
+TEST(PointListCapture, PointsInSetupMatAreTakenAsTheyAre) {
+    const PointLists lists(one_detector());
+    constexpr std::size_t kSide = 3;  // six rows, filled up to nine
+    std::vector<double> lit(kSide * kSide * 3, 0.0);
+    std::vector<double> seen = lit;
+    const std::vector<Row> rows = one_detector();
+    for (std::size_t m = 0; m < kSide * kSide; ++m) {
+        const Row& row = rows[m < rows.size() ? m : 0];
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            // Row after row, in a file whose first index is the fastest.
+            const std::size_t place = m / kSide + kSide * (m % kSide) + kSide * kSide * axis;
+            lit[place] = 0.02 * row.lit[axis];
+            seen[place] = 0.02 * row.seen[axis];
+        }
+    }
+    write_mat(lists.file("setup.mat"),
+              {mat_variable("laserpoints", {kSide, kSide, 3}, lit),
+               mat_variable("detectpoints", {kSide, kSide, 3}, seen)});
+    CaptureReadSettings settings;
+    settings.bin_width_m = 0.0048;
+    const core::Capture capture = read_capture(lists.path(), settings);
+    const core::WallScan& scan = capture.scan.wall();
+    EXPECT_EQ(scan.illumination.grid, (std::array<std::size_t, 2>{2, 3}));
+    EXPECT_NEAR((scan.illumination.positions[0] - core::Vec3(0.04, 0.1, 0)).norm(), 0, 1e-12);
+    EXPECT_NEAR((scan.sensing.positions[0] - core::Vec3(0.14, 0.14, 0)).norm(), 0, 1e-12);
+    EXPECT_EQ(capture.transient.histogram(0)[3], 13.0F);
+}
+
 TEST(PointListCapture, OneIlluminationPointIsASingleScan) {
     std::vector<Row> rows = one_detector();
     for (Row& row : rows) std::swap(row.lit, row.seen);

@@ -36,9 +36,36 @@ def write_general_nlos(capture: Capture, folder: Path, pitch_m: float) -> Writte
                                       f"capture.bin_width_m={capture.bin_width_m!r}"))
 
 
+def write_general_nlos_setup(capture: Capture, folder: Path) -> Written:
+    """`sub_Sig` beside a setup.mat of `laserpoints` and `detectpoints` [m], row after row in squares
+    that the first point fills up."""
+    counted = capture.as_counts()
+    lit, seen, histograms = pairs_of(counted)
+    side = int(np.ceil(np.sqrt(len(lit))))
+
+    def folded(points: np.ndarray) -> np.ndarray:
+        rest = np.repeat(points[:1], side * side - len(points), axis=0)
+        return np.concatenate([points, rest]).reshape(side, side, 3)
+    write_v5(folder / "setup.mat", {"laserpoints": folded(lit), "detectpoints": folded(seen)})
+    write_v5(folder / "sub_Sig.mat", {"sub_Sig": histograms.astype(np.float64)})
+    return Written(folder, replace(counted, start_m=0.0),
+                   (f"capture.bin_width_m={capture.bin_width_m!r}",))
+
+
+def write_general_nlos_data(capture: Capture, folder: Path) -> Written:
+    """`data` of a square of histograms beside its setup.mat."""
+    require(capture.pattern == "confocal", "general-nlos-data", "a confocal scan")
+    counted = capture.as_counts()
+    write_v5(folder / "setup.mat", {"laserpoints": counted.sensing, "detectpoints": counted.sensing})
+    write_v5(folder / "data.mat", {"data": np.moveaxis(counted.H, 0, -1).astype(np.float64)})
+    return Written(folder, replace(counted, start_m=0.0),
+                   (f"capture.bin_width_m={capture.bin_width_m!r}",))
+
+
 def write_surface_optimisation(capture: Capture, folder: Path) -> Written:
     """`transient` (points, bins) and `lighting` (points, 3) [m]; confocal, 1.2 mm per bin. The
-    authors' lists come from MATLAB's grids, whose first index, here x, is the fastest."""
+    authors' lists come from MATLAB's grids, whose first index, here x, is the fastest, and whose y
+    runs downwards."""
     require(capture.pattern == "confocal", "surface-optimisation", "a confocal scan")
     require_axis(capture, "surface-optimisation", SURFACE_BIN_M)
     expected = replace(capture.as_counts(), start_m=0.0, bin_width_m=SURFACE_BIN_M)
@@ -48,7 +75,7 @@ def write_surface_optimisation(capture: Capture, folder: Path) -> Written:
                             sensing=expected.sensing.swapaxes(0, 1))
     _, points, histograms = pairs_of(x_fastest)
     path = folder / "transient.mat"
-    write_v5(path, {"transient": histograms.astype(np.float64), "lighting": points})
+    write_v5(path, {"transient": histograms.astype(np.float64), "lighting": points * [1, -1, 1]})
     return Written(path, expected)
 
 
@@ -133,6 +160,9 @@ CASES = [
                                              size_m=(12 * _PITCH_M, 10 * _PITCH_M),
                                              lit_points=(2, 3)),
          partial(write_general_nlos, pitch_m=_PITCH_M)),
+    *(Case(f"general-nlos-setup, {source.pattern}", source, write_general_nlos_setup)
+      for source in (Source(), _EXHAUSTIVE)),
+    Case("general-nlos-data", Source(points=(10, 10)), write_general_nlos_data),
     *(Case(f"surface-optimisation, {kind}",
            Source(points=points, bin_width_m=SURFACE_BIN_M, num_bins=2048),
            write_surface_optimisation) for kind, points in (("grid", (12, 10)), ("list", (40,)))),

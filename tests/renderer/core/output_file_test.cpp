@@ -35,6 +35,29 @@ TEST(OutputFile, AppearsOnlyWhenCommitted) {
     }
 }
 
+TEST(OutputFile, SymbolicLinksStayAndWhatTheyLeadToIsWritten) {
+    const test_support::TemporaryFolder folder;
+    fs::create_directory(folder.file("data"));
+    fs::create_symlink("data/blob", folder.file("first.npz"));
+    fs::create_symlink("first.npz", folder.file("second.npz"));
+    for (const std::string text : {"whole", "newer"}) {
+        {
+            const core::OutputFile output(folder.file("second.npz"));
+            EXPECT_TRUE(output.temporary().ends_with(".npz")) << output.temporary();
+            EXPECT_EQ(fs::path(output.temporary()).parent_path(), folder.file("data"));
+        }
+        core::write_text_file(folder.file("second.npz"), text);
+        EXPECT_TRUE(fs::is_symlink(folder.file("first.npz")));
+        EXPECT_TRUE(fs::is_symlink(folder.file("second.npz")));
+        EXPECT_EQ(test_support::file_bytes(folder.file("data/blob")), text);
+        EXPECT_EQ(std::distance(fs::directory_iterator(folder.file("data")), {}), 1);
+    }
+    fs::create_symlink("loop", folder.file("loop"));
+    EXPECT_THROW(core::write_text_file(folder.file("loop"), "x"), core::Error);
+    fs::create_symlink("nowhere/x", folder.file("dangling"));
+    EXPECT_THROW(core::write_text_file(folder.file("dangling"), "x"), core::Error);
+}
+
 TEST(OutputFile, FailedWorkLeavesTheOlderResult) {
     const test_support::TemporaryFolder folder;
     const std::string target = folder.file("result.txt");
