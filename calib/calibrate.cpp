@@ -58,14 +58,21 @@ Calibration calibrate(const SetupSettings& settings, const core::Capture& captur
     }
     result.direct = fit_direct_returns(capture, settings.response);
     observations.returns = result.direct.points;
+    observations.axis = capture.time_axis;
     observations.commands = settings.commands;
     observations.command_unit = settings.command_unit;
     observations.spot_sigma_px = settings.spot_sigma_px;
     observations.wall_distance_m = settings.known.wall_distance_m;
     observations.galvo_gain = settings.known.galvo_gain;
     observations.time_zero_m = settings.known.time_zero_m;
-    result.setup = solve_setup(observations);
+    result.setup = solve_setup(observations, settings.outliers);
     return result;
+}
+
+std::vector<std::string> Calibration::warnings() const {
+    std::vector<std::string> all = direct.warnings;
+    all.insert(all.end(), setup.verdict.warnings.begin(), setup.verdict.warnings.end());
+    return all;
 }
 
 }  // namespace calib

@@ -31,6 +31,7 @@ struct SetupSettings {
     double spot_sigma_px = 0.1;
     KnownSettings known;
     ResponseShape response = ResponseShape::Gaussian;
+    OutlierRule outliers = OutlierRule::Keep;
 };
 
 template <class Visitor>
@@ -50,12 +51,15 @@ template <class Visitor>
 void for_each_field(SetupSettings& s, Visitor&& visit) {
     visit("direct_returns", s.direct_returns, "capture with one direct return per wall point");
     visit("commands", s.commands, "[u, v] sent to the galvo for each of them");
-    visit("command_unit", s.command_unit, "of the commands: volt leaves the gain open");
+    visit("command_unit",
+          s.command_unit,
+          "of the commands, as angles of the beam; volt leaves the gain open");
     visit("boards", s.boards, "chessboard photographs of a camera that sees the wall");
     visit("spots_px", s.spots_px, "where that camera sees the laser for each command [px]");
     visit("spot_sigma_px", s.spot_sigma_px, core::above(0, "standard deviation of these [px]"));
     visit("known", s.known, "what was measured by other means");
     visit("response", s.response, "shape of the instrument response");
+    visit("outliers", s.outliers, "what is done with points far from where the others put them");
 }
 
 /// CALIBRATION.json: a set-up with the uncertainty of everything in it.
@@ -63,6 +67,9 @@ struct Calibration {
     DirectReturns direct;
     SetupGeometry setup;
     std::optional<CameraCalibration> camera;
+
+    /// What casts doubt on it, a sentence each.
+    std::vector<std::string> warnings() const;
 };
 
 /// Throws core::Error naming the setting that is out of range.
@@ -76,7 +83,7 @@ SetupSettings read_setup(const std::string& path, const std::vector<std::string>
 ///
 /// capture   of settings.direct_returns
 /// throws    core::Error for inputs that do not fit together; core::Failure when the data cannot
-///           determine the set-up
+///           determine the set-up, or contradict what is said of them
 Calibration calibrate(const SetupSettings& settings, const core::Capture& capture);
 
 core::Json calibration_json(const Calibration& calibration);

@@ -70,7 +70,14 @@ Json calibration_json(const Calibration& calibration) {
     json["ambient"] = with_sigma(direct.ambient, direct.ambient_error);
     json["deviance"] = direct.deviance;
     json["expected_deviance"] = direct.expected_deviance;
-    json["range_rms_m"] = setup.range_rms_m;
+    const SetupVerdict& verdict = setup.verdict;
+    json["range_rms_m"] = verdict.fit.length_rms_m;
+    json["range_noise_m"] = verdict.fit.noise_rms_m;
+    json["chi_square"] = verdict.fit.chi_square;
+    json["degrees_of_freedom"] = verdict.fit.degrees_of_freedom;
+    json["sigma_scale"] = verdict.sigma_scale;
+    json["outliers"] = verdict.outliers;
+    json["warnings"] = calibration.warnings();
     json["condition_number"] = setup.uncertainty.condition_number;
     json["unidentifiable"] = setup.uncertainty.unidentifiable;
     json["camera"] = calibration.camera ? camera_json(*calibration.camera) : Json();

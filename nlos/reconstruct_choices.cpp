@@ -80,14 +80,14 @@ void leave_out_direct_return(const core::Capture& capture, Reconstruction& resul
     const double end_m = capture.time_axis.opl_end_m();
     if (!direct || direct->end_opl_m >= end_m) return;
     settings.crop.opl_range_m = {direct->end_opl_m, end_m};
-    if (!core::is_stated(settings.response) && !core::recorded_response(capture)) {
+    const bool is_open = !core::is_stated(settings.response) && !settings.response.is_none;
+    if (is_open && !core::recorded_response(capture)) {
         settings.response = direct->response;
     }
     result.findings.push_back(describe(*direct));
 }
 
-/// The method, with what it takes from the capture's provenance: `auto` lets one that can explain a
-/// recorded response.
+/// The method, with what it takes from the capture's provenance.
 void choose_and_enter_method(const core::Capture& capture,
                              PreparedCapture& prepared,
                              Reconstruction& result) {
@@ -95,13 +95,8 @@ void choose_and_enter_method(const core::Capture& capture,
     if (!settings.solver.spot_m) {
         settings.solver.spot_m = core::recorded_spot_m(capture).value_or(0.0);
     }
-    ReconstructSettings with_response = settings;
-    if (settings.method == Method::Auto && !core::is_stated(settings.response)) {
-        with_response.response = core::recorded_response(capture).value_or(settings.response);
-    }
-    const MethodChoice choice = choose_method(with_response, prepared);
+    const MethodChoice choice = choose_method(settings, prepared);
     settings.method = choice.method;
-    if (traits_of(settings).explains_response) settings.response = with_response.response;
     result.method = core::enum_name(choice.method);
     result.reason = choice.reason;
 }
@@ -231,7 +226,7 @@ std::vector<std::string> warnings_of(const core::Capture& capture,
                                      const ReconstructionPlan& plan,
                                      const ReconstructSettings& settings) {
     std::vector<std::string> warnings = capture_warnings(capture);
-    append(core::detector_warnings(capture, settings.response), warnings);
+    if (auto text = core::detector_warning(capture)) warnings.push_back(std::move(*text));
     if (auto text = unobserved_warning(settings, plan.observed, plan.time_axis.num_bins)) {
         warnings.push_back(std::move(*text));
     }

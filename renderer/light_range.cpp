@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/light_range.h"
 
+#include "renderer/core/capture/instrument_response.h"
 #include "renderer/core/parallel.h"
 #include "renderer/core/sampling.h"
 #include "renderer/frame_sequence.h"
@@ -164,6 +165,12 @@ double resolving_bin_m(const core::WallScan& scan, double depth_m) {
     return pitch * width / std::hypot(width, 2.0 * depth_m);
 }
 
+// Of a detector whose response they are to show; infinite where none is known.
+double widest_bin_of(const SceneDescription& description) {
+    const double fwhm_ps = description.detector ? description.detector->jitter_fwhm_ps : 0.0;
+    return fwhm_ps > 0.0 ? core::widest_bin_m(fwhm_ps) : std::numeric_limits<double>::infinity();
+}
+
 // Two significant digits.
 double round_up(double value) {
     const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
@@ -231,7 +238,8 @@ core::TimeAxis choose_time_axis(const std::optional<LightRange>& range,
                                 const SceneDescription& description) {
     constexpr int kFewest = 64;
     constexpr int kMost = 4096;
-    constexpr double kMargin = 0.02;  // of the range, on either side
+    constexpr double kMostStated = 1e9;  // bins of a stated width
+    constexpr double kMargin = 0.02;     // of the range, on either side
     if (!range || range->is_dark()) {
         throw core::Error("time_axis",
                           "found auto where no light reaches the scan",
@@ -253,18 +261,27 @@ core::TimeAxis choose_time_axis(const std::optional<LightRange>& range,
     const double margin = kMargin * (ends[1] - ends[0]);
     const double start = std::max(0.0, ends[0] - margin);
     double span = ends[1] + margin - start;
-    const double wanted =
-        scan.visit([&](const auto& kind) { return resolving_bin_m(kind, 0.5 * (middle - legs)); });
-    double width = wanted > 0.0 ? std::min(wanted, span / kFewest) : span / 256.0;
-    if (span > kMost * width) {
-        span = std::max(kMost * width, sure_end + margin - start);
-        width = std::max(width, span / kMost);
+    core::TimeAxis axis = description.time_axis;
+    const SceneTimeAxis::Stated& stated = description.time_axis.stated;
+    if (!stated.bin_width) {
+        const double wanted = scan.visit(
+            [&](const auto& kind) { return resolving_bin_m(kind, 0.5 * (middle - legs)); });
+        const double widest = widest_bin_of(description);
+        double width = wanted > 0.0 ? std::min(wanted, span / kFewest) : span / 256.0;
+        width = std::min(width, widest);
+        if (span > kMost * width) {
+            span = std::max(kMost * width, sure_end + margin - start);
+            width = std::max(width, span / kMost);
+        }
+        axis.bin_width_m = width < widest ? round_up(width) : width;
     }
-    core::TimeAxis axis;
-    axis.bin_width_m = round_up(width);
-    axis.opl_start_m = std::floor(start / axis.bin_width_m) * axis.bin_width_m;
-    axis.num_bins = std::max(
-        2, static_cast<int>(std::ceil((start + span - axis.opl_start_m) / axis.bin_width_m)));
+    if (!stated.opl_start) {
+        axis.opl_start_m = std::floor(start / axis.bin_width_m) * axis.bin_width_m;
+    }
+    if (!stated.num_bins) {
+        const double bins = (start + span - axis.opl_start_m) / axis.bin_width_m;
+        axis.num_bins = static_cast<int>(std::clamp(std::ceil(bins), 2.0, kMostStated));
+    }
     return axis;
 }
 

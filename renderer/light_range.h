@@ -41,6 +41,9 @@ std::optional<LightRange> find_light_range(const Scene& scene,
 /// along the wall (source [OToole2018], resolution limits), but about 64 to 4096 of them. Were it
 /// more, the last bins go, down to 99.9 % of the light, before bins grow wider.
 ///
+/// What the description states of an automatic axis stays as it is, and bins are fine enough for
+/// its detector.
+///
 /// range    of this scene, scan and description, before anything moves
 /// throws   core::Error when no light reaches the scan
 core::TimeAxis choose_time_axis(const std::optional<LightRange>& range,

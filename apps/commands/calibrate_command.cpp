@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/arguments.h"
+#include "apps/capture_options.h"
 #include "apps/estimate_text.h"
 #include "apps/outcome.h"
 #include "apps/progress_bar.h"
@@ -22,9 +23,11 @@ struct CalibrateArguments {
 void run(const CalibrateArguments& arguments) {
     require_suffix(arguments.output, {".json"});
     core::check_targets({arguments.output}, {arguments.setup});
-    const calib::SetupSettings settings = calib::read_setup(arguments.setup, arguments.overrides);
+    std::vector<std::string> overrides = arguments.overrides;
+    const auto reading = capture_options(take_capture_overrides(overrides)).capture;
+    const calib::SetupSettings settings = calib::read_setup(arguments.setup, overrides);
     const ProgressBar bar("calibrate");
-    const core::Capture capture = nlos::read_capture(settings.direct_returns);
+    const core::Capture capture = nlos::read_capture(settings.direct_returns, reading);
     const calib::Calibration calibration = calib::calibrate(settings, capture);
     core::Json json = calib::calibration_json(calibration);
     json["program"] = version_text();
@@ -32,6 +35,7 @@ void run(const CalibrateArguments& arguments) {
     json["settings"] = core::write_value(settings);
     core::write_text_file(arguments.output, core::json_text(json));
 
+    for (const std::string& text : calibration.warnings()) warn(text);
     const calib::SetupGeometry& setup = calibration.setup;
     for (std::size_t i = 0; i < setup.values.size(); ++i) {
         if (setup.sigma[i] == 0.0) continue;
@@ -44,22 +48,22 @@ void run(const CalibrateArguments& arguments) {
     outcome()["response_fwhm_ps"] = response["jitter_fwhm_ps"];
     outcome()["points"] = setup.points_m.size();
     outcome()["condition_number"] = setup.uncertainty.condition_number;
-    outcome()["range_rms_m"] = setup.range_rms_m;
+    outcome()["range_rms_m"] = setup.verdict.fit.length_rms_m;
     note_written({arguments.output});
     print("wrote {} ({} points, condition number {:.3g}, path lengths off by {:.3g} mm rms)\n",
           arguments.output,
           setup.points_m.size(),
           setup.uncertainty.condition_number,
-          1e3 * setup.range_rms_m);
+          1e3 * setup.verdict.fit.length_rms_m);
 }
 
 void declare_calibrate(Command& command) {
     auto& arguments = command.runs<CalibrateArguments>(run);
-    command.settings = core::settings_help(calib::SetupSettings{});
+    command.settings = core::settings_help(WithCapture<calib::SetupSettings>{});
     add_file_option(command, "SETUP", arguments.setup, "Description of the measurements (.json)")
         ->required();
     add_output_option(command, arguments.output, "Calibration to write (.json)")->required();
-    add_set_option(command, arguments.overrides);
+    add_capture_options(command, arguments.overrides);
 }
 
 }  // namespace

@@ -154,9 +154,8 @@ void describe_captures(std::string& out,
     for (const std::string& warning : nlos::capture_warnings(capture)) {
         add_line(out, "warning: {}", warning);
     }
-    const auto used = response.value_or(core::ResponseSettings{});
-    for (const std::string& warning : core::detector_warnings(capture, used)) {
-        add_line(out, "warning: {}", warning);
+    if (const auto warning = core::detector_warning(capture)) {
+        add_line(out, "warning: {}", *warning);
     }
 }
 

@@ -136,11 +136,12 @@ void print_light(std::string& out,
         }
     }
     add_line(out,
-             "time axis: {:.4g} to {:.4g} m, {} bins of {:.4g} m{}",
+             "time axis: {:.4g} to {:.4g} m, {} bins of {:.4g} m ({:.4g} ps){}",
              axis.opl_start_m,
              axis.opl_end_m(),
              axis.num_bins,
              axis.bin_width_m,
+             axis.bin_width_ps(),
              description.time_axis.automatic ? " (auto)" : "");
     if (!range) return;
     print_warnings(out, renderer::axis_warnings(*range, axis, description.frames));

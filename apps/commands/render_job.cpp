@@ -163,6 +163,9 @@ core::Json write_light(const renderer::LightRange& light, const core::TimeAxis& 
 
 void choose_axis(const std::optional<renderer::LightRange>& light, RenderInput& input) {
     renderer::SceneDescription& description = input.description;
+    if (input.calibration && !description.detector) {
+        description.detector = {input.calibration->response.jitter_fwhm_ps};
+    }
     const core::TimeAxis axis =
         renderer::choose_time_axis(light, *input.scene, input.scan, description);
     description.time_axis = {input.calibration ? axis_of_device(*input.calibration, axis) : axis};

@@ -8,6 +8,7 @@
 #include "nlos/detector/detector.h"
 #include "nlos/detector/sensor_counts.h"
 #include "nlos/formats/capture_file.h"
+#include "renderer/core/capture/recorded_detector.h"
 #include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/parallel.h"
@@ -79,6 +80,7 @@ void run(const NoiseArguments& arguments) {
         options.settings = nlos::detector_of(*sensor);
         for (const std::string& text : arguments.overrides) core::apply_override(options, text);
     }
+    options.settings.response = core::resolve_scene_response(options.settings.response, capture);
     if (const auto warning = nlos::coarse_bins_warning(capture, options.settings)) {
         warn(*warning);
     }

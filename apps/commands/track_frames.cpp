@@ -39,7 +39,7 @@ void apply(const TrackSettings& settings, TrackSensor& sensor) {
 void use_model(const core::SensorModel& model, const TrackSettings& settings, TrackSensor& sensor) {
     core::SensorSetup setup;
     setup.model = model;
-    setup.pose = settings.pose;
+    setup.pose = settings.pose.whole();
     setup.poses = settings.poses;
     setup.subsamples = settings.subsamples;
     core::RelayWall wide;
@@ -84,6 +84,39 @@ std::vector<long> frame_numbers(const std::vector<std::string>& paths, std::size
     return numbers;
 }
 
+/// Wall points say where light falls; where the sensor stands only matters when it is what moves.
+void refuse_unused_pose(const TrackSettings& settings) {
+    if (settings.moves_sensor()) return;
+    const bool has_poses = !settings.poses.empty();
+    if (!has_poses && !settings.pose.is_stated()) return;
+    throw core::Error(has_poses ? "poses" : "pose",
+                      "found for frames that state wall points in place of a sensor",
+                      "must come with `sensor`, or be left out");
+}
+
+/// Takes from the provenance of a capture what the settings do not state.
+void adopt(const core::SensorSetup& recorded, TrackSettings& settings) {
+    const bool stands = settings.pose.is_stated() || settings.moves_sensor();
+    if (settings.poses.empty() && !stands) settings.poses = recorded.poses;
+    settings.pose.complete(recorded.pose_of_frame(0));
+    if (!settings.wall) settings.wall = recorded.wall;
+}
+
+/// The time between frames of a capture, unless the settings state it.
+void take_frame_time(const core::Capture& capture,
+                     const TrackSettings& settings,
+                     TrackFrames& result) {
+    if (!capture.sequence || settings.frame_s) return;
+    if (capture.sequence->frame_s > 0.0) {
+        result.sensor.frame_s = capture.sequence->frame_s;
+        return;
+    }
+    result.warnings.push_back(
+        fmt::format("the frames do not say how far apart they are: {:.4g} s{}; frame_s states it",
+                    result.sensor.frame_s,
+                    result.sensor.setup ? ", as the sensor takes for one" : " are assumed"));
+}
+
 /// The sensor of a capture: that of the settings, that of its provenance, or its wall points.
 TrackSensor sensor_of(const core::Capture& capture,
                       const std::string& name,
@@ -94,15 +127,13 @@ TrackSensor sensor_of(const core::Capture& capture,
     sensor.sigma_m = core::sigma_m_from_fwhm_ps(kUsualFwhm_ps);
     sensor.opl_origin = capture.scan.opl_origin();
     const auto recorded = core::recorded_sensor(capture);
-    if (recorded && settings.sensor.empty()) {
-        settings.pose = recorded->pose;
-        const bool is_free = settings.moves_sensor();
-        if (settings.poses.empty() && !is_free) settings.poses = recorded->poses;
-        if (!settings.wall) settings.wall = recorded->wall;
-        use_model(recorded->model, settings, sensor);
-    } else if (!settings.sensor.empty()) {
+    if (recorded) adopt(*recorded, settings);
+    if (!settings.sensor.empty()) {
         use_model(core::read_sensor_model(settings.sensor), settings, sensor);
+    } else if (recorded) {
+        use_model(recorded->model, settings, sensor);
     } else {
+        refuse_unused_pose(settings);
         sensor.spots_m = capture.scan.wall().sensing.positions;
         sensor.wall = settings.wall ? *settings.wall : calib::wall_through(sensor.spots_m, name);
         const core::Devices devices = capture.scan.devices();
@@ -110,9 +141,6 @@ TrackSensor sensor_of(const core::Capture& capture,
         if (const auto response = core::recorded_response(capture)) {
             sensor.sigma_m = core::sigma_m_from_fwhm_ps(response->jitter_fwhm_ps);
         }
-    }
-    if (capture.sequence && capture.sequence->frame_s > 0.0) {
-        sensor.frame_s = capture.sequence->frame_s;
     }
     if (sensor.num_zones() != capture.scan.num_pairs()) {
         throw core::Error(name,
@@ -147,6 +175,7 @@ TrackFrames read_track_frames(const std::vector<std::string>& paths,
                                                     : nlos::read_capture(paths, reading);
     TrackFrames result;
     result.sensor = sensor_of(capture, paths.front(), settings);
+    take_frame_time(capture, settings, result);
     const std::vector<core::Transient> single{capture.transient};
     const auto& frames = capture.sequence ? capture.sequence->frames : single;
     if (!settings.poses.empty() && settings.poses.size() != frames.size()) {
@@ -158,6 +187,7 @@ TrackFrames read_track_frames(const std::vector<std::string>& paths,
     const std::vector<long> numbers = frame_numbers(paths, frames.size());
     for (std::size_t f = 0; f < frames.size(); ++f) {
         TrackFrame frame;
+        frame.name = fmt::format("{}: frame {}", paths.front(), f);
         frame.time_s = static_cast<double>(numbers[f]) * result.sensor.frame_s;
         const auto values = frames[f].values();
         frame.counts.assign(values.begin(), values.end());
@@ -180,6 +210,7 @@ TrackFrames read_background_frames(const TrackSettings& settings,
                                    const nlos::CaptureReadSettings& reading) {
     TrackSettings of_file = settings;
     of_file.poses.clear();
+    of_file.pose = {};
     TrackFrames background = read_track_frames({settings.background.file}, of_file, reading);
     const core::TimeAxis& found = background.sensor.axis;
     constexpr double kSame_bins = 1e-3;
@@ -219,14 +250,12 @@ std::optional<TrackFrame> FrameLines::next() {
     if (!json.is_object()) core::throw_wrong_type(where, json, "an object with histograms");
     core::check_keys(json, where, {"t", "histograms", "pose"});
     TrackFrame frame;
+    frame.name = where;
     frame.time_s = last_time_s_ ? *last_time_s_ + frame_s_ : 0.0;
     if (json.contains("t")) core::read_value(json["t"], where + ".t", frame.time_s);
     last_time_s_ = frame.time_s;
     if (json.contains("pose") && !json["pose"].is_null()) {
-        core::SensorPose pose;
-        core::read_value(json["pose"], where + ".pose", pose);
-        core::validate(pose, where + ".pose");
-        frame.pose = pose;
+        core::read_value(json["pose"], where + ".pose", frame.pose);
     }
     if (!json.contains("histograms")) {
         throw core::Error(where + ".histograms", "is missing", "must be bins per zone, or null");
@@ -244,7 +273,6 @@ std::optional<TrackFrame> FrameLines::next() {
                       zone + ", number of bins",
                       static_cast<double>(zones[z].size()),
                       std::to_string(num_bins_));
-        for (const double count : zones[z]) core::require(count >= 0.0, zone, count, "at least 0");
         frame.counts.insert(frame.counts.end(), zones[z].begin(), zones[z].end());
     }
     return frame;

@@ -7,6 +7,7 @@
 #include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
+#include "calib/track/reversed_time.h"
 #include "calib/track/track_file.h"
 #include "calib/track/tracker.h"
 #include "nlos/pictures/picture.h"
@@ -34,8 +35,8 @@ class Run {
         const nlos::CaptureReadSettings& reading)
         : settings_(settings), tracker_(settings, sensor) {
         if (settings.background.file.empty()) return;
-        tracker_.learn_background(
-            read_background_frames(settings, tracker_.sensor(), reading).frames);
+        background_ = read_background_frames(settings, tracker_.sensor(), reading).frames;
+        tracker_.learn_background(background_);
     }
 
     const FrameEstimate& step(const calib::TrackFrame& frame) {
@@ -52,6 +53,14 @@ class Run {
             shown_ = {frame.time_s, frame.counts, tracker_.background(), tracker_.signal()};
         }
         return estimate;
+    }
+
+    /// Warns where frames that were all stepped through seem to run backwards in time.
+    void check_time(const std::vector<calib::TrackFrame>& frames) {
+        if (const auto text = calib::reversed_time_warning(
+                settings_, tracker_.sensor(), frames, background_, estimates_)) {
+            summary_.warnings.push_back(*text);
+        }
     }
 
     TrackSummary finish(const TrackRequest& request, const std::vector<std::string>& warnings) {
@@ -92,6 +101,7 @@ class Run {
 
     TrackSettings settings_;
     Tracker tracker_;
+    std::vector<calib::TrackFrame> background_;
     std::vector<FrameEstimate> estimates_;
     ExplainedFrame shown_;
     double best_ = 0.0;
@@ -129,6 +139,7 @@ TrackSummary track_to_file(const TrackRequest& request) {
         tracking.update(static_cast<double>(done) / static_cast<double>(input.frames.size()), "");
         if (tracking.should_stop()) throw core::Failure("track", "interrupted");
     }
+    run.check_time(input.frames);
     return run.finish(request, input.warnings);
 }
 

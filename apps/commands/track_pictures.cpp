@@ -102,7 +102,7 @@ class Plan {
 };
 
 void draw_wall(const calib::TrackSettings& settings, const calib::TrackSensor& sensor, Plan& plan) {
-    const core::SensorFootprints footprints = footprints_at(sensor, settings.pose);
+    const core::SensorFootprints footprints = footprints_at(sensor, settings.pose.whole());
     Eigen::AlignedBox2d spots;
     for (const core::ZoneFootprint& zone : footprints.zones) {
         for (const Vec3& p : zone.seen.positions) {

@@ -14,6 +14,7 @@
 #include "nlos/detector/detector.h"
 #include "nlos/detector/sensor_counts.h"
 #include "nlos/formats/capture_file.h"
+#include "renderer/core/capture/recorded_detector.h"
 #include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/core/settings_help.h"
 #include "renderer/core/settings_json.h"
@@ -100,8 +101,9 @@ core::Capture simulate_noise(const core::Capture& capture,
             throw core::Error("sensor", "the capture states none", "must be False for other scans");
         }
     }
-    const auto settings = settings_from_python(
+    auto settings = settings_from_python(
         keywords, sensor ? nlos::detector_of(*sensor) : nlos::DetectorSettings{});
+    settings.response = core::resolve_scene_response(settings.response, capture);
     return run_long(nb::none(), threads, [&](const core::Progress& report) {
         core::validate(capture, "capture");
         if (const auto text = nlos::coarse_bins_warning(capture, settings)) report.warn(*text);
@@ -124,14 +126,16 @@ nb::object scores(const nlos::Metrics& metrics) {
 
 nb::object calibrate(const std::string& path, const nb::dict& changes) {
     const core::Json json = json_from_python(changes, "");
-    const core::Json calibration = run_long(nb::none(), 0, [&](const core::Progress&) {
-        calib::SetupSettings settings = calib::read_setup(path, {});
-        core::read_value(json, "", settings);
-        const core::Capture capture =
-            with_files_locked([&] { return nlos::read_capture(settings.direct_returns); });
-        return calib::calibration_json(calib::calibrate(settings, capture));
+    const core::Json found = run_long(nb::none(), 0, [&](const core::Progress& report) {
+        apps::WithCapture<calib::SetupSettings> options{calib::read_setup(path, {}), {}};
+        core::read_value(json, "", options);
+        const core::Capture capture = with_files_locked(
+            [&] { return nlos::read_capture(options.settings.direct_returns, options.capture); });
+        const calib::Calibration calibration = calib::calibrate(options.settings, capture);
+        for (const std::string& text : calibration.warnings()) report.warn(text);
+        return calib::calibration_json(calibration);
     });
-    return python_from_json(calibration);
+    return python_from_json(found);
 }
 
 using Pair = std::pair<std::uint64_t, std::uint64_t>;

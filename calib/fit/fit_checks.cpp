@@ -263,9 +263,8 @@ void add_warnings(const FitDriver& driver,
                   const SceneState& state,
                   FitResult& result) {
     warn_of_cut_light(driver.data.axis, ambient_of(stage, state), result);
-    for (std::string& text :
-         core::detector_warnings(driver.input.capture, driver.settings.response)) {
-        result.warnings.push_back(std::move(text));
+    if (auto text = core::detector_warning(driver.input.capture)) {
+        result.warnings.push_back(std::move(*text));
     }
     for (const ParameterBlock& block : driver.model->blocks()) {
         const bool is_bounded = block.row->effect == Effect::AddsLight;

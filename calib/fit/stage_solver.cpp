@@ -2,6 +2,7 @@
 #include "calib/fit/stage_solver.h"
 
 #include "calib/model/state_vector.h"
+#include "calib/statistics/quiet_ceres.h"
 #include "renderer/core/error.h"
 #include "renderer/core/statistics.h"
 
@@ -178,6 +179,7 @@ SolveSummary solve_stage(const SceneModel& model,
     options.logging_type = ceres::SILENT;
     options.callbacks = {&stop};
     ceres::Solver::Summary summary;
+    quiet_ceres();
     ceres::Solve(options, &problem, &summary);
     if (summary.termination_type == ceres::USER_FAILURE) throw core::Failure("fit", "interrupted");
     state = values.state();

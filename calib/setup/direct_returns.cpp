@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "calib/setup/direct_returns.h"
 
+#include "calib/setup/direct_return_checks.h"
 #include "calib/statistics/poisson_deviance.h"
+#include "calib/statistics/quiet_ceres.h"
 #include "renderer/core/capture/instrument_response.h"
+#include "renderer/core/statistics.h"
 
 #include <ceres/ceres.h>
 #include <fmt/core.h>
@@ -76,18 +79,31 @@ struct PeakCost {
     }
 };
 
+// The middle of the window of about the response's width that holds most counts.
+int brightest_bin(std::span<const float> histogram, double sigma_m, double bin_width_m) {
+    const int size = static_cast<int>(histogram.size());
+    const int reach = std::min(static_cast<int>(sigma_m / bin_width_m), (size - 1) / 2);
+    double sum = 0.0;
+    for (int b = 0; b < 2 * reach; ++b) sum += double{histogram[static_cast<std::size_t>(b)]};
+    double most = -1.0;
+    int brightest = reach;
+    for (int b = reach; b + reach < size; ++b) {
+        sum += double{histogram[static_cast<std::size_t>(b + reach)]};
+        if (sum > most) {
+            most = sum;
+            brightest = b;
+        }
+        sum -= double{histogram[static_cast<std::size_t>(b - reach)]};
+    }
+    return brightest;
+}
+
 Peak first_guess(const core::Capture& capture, std::size_t point, double sigma_m) {
     const auto histogram = capture.transient.histogram(point);
     const core::TimeAxis& axis = capture.time_axis;
     const auto [first_seen, end_seen] = capture.observed_range(point);
-    const auto highest = std::max_element(histogram.begin(), histogram.end());
-    if (!(*highest > 0.0F)) {
-        throw core::Error(fmt::format("direct_returns: point {}", point),
-                          "found no light",
-                          "every histogram must hold its direct return");
-    }
     Peak peak;
-    const int bin = static_cast<int>(highest - histogram.begin());
+    const int bin = brightest_bin(histogram, sigma_m, axis.bin_width_m);
     const int reach = static_cast<int>(kWindow * sigma_m / axis.bin_width_m) + 2;
     peak.first_bin = std::max(first_seen, bin - reach);
     peak.last_bin = std::min(end_seen - 1, bin + reach);
@@ -104,25 +120,30 @@ Peak first_guess(const core::Capture& capture, std::size_t point, double sigma_m
     return peak;
 }
 
-// Width of the sum of all histograms, each moved to its highest bin.
+// Of pairs of photons in one histogram, by their distance in bins: a peak's pairs lie root 2 times
+// as wide as its photons, noise is the same at all distances but 0, and no photon need be placed.
 double rough_width(const core::Capture& capture) {
-    constexpr int kReach = 400;
-    std::vector<double> sum(2 * kReach + 1, 0.0);
+    constexpr std::size_t kReach = 400;
+    std::vector<double> pairs(std::min(kReach, capture.transient.num_bins()), 0.0);
     for (std::size_t p = 0; p < capture.transient.num_pairs(); ++p) {
         const auto histogram = capture.transient.histogram(p);
-        const auto highest = std::max_element(histogram.begin(), histogram.end());
-        const auto bin = highest - histogram.begin();
-        for (std::ptrdiff_t d = -kReach; d <= kReach; ++d) {
-            const std::ptrdiff_t b = bin + d;
-            if (b < 0 || b >= static_cast<std::ptrdiff_t>(histogram.size())) continue;
-            sum[static_cast<std::size_t>(d + kReach)] +=
-                static_cast<double>(histogram[static_cast<std::size_t>(b)]);
+        for (std::size_t b = 0; b < histogram.size(); ++b) {
+            if (histogram[b] == 0.0F) continue;
+            const std::size_t end = std::min(pairs.size(), histogram.size() - b);
+            for (std::size_t d = 1; d < end; ++d) {
+                pairs[d] += double{histogram[b]} * double{histogram[b + d]};
+            }
         }
     }
-    const double top = sum[kReach];
-    int width = 0;  // bins above half the maximum
-    for (const double value : sum) width += value > 0.5 * top ? 1 : 0;
-    return std::max(0.4, width / 2.355) * capture.time_axis.bin_width_m;
+    constexpr double kNarrowest = 0.4;  // bins
+    if (pairs.size() < 3) return kNarrowest * capture.time_axis.bin_width_m;
+    const double base = core::median({pairs.begin() + 1, pairs.end()});
+    const double half = 0.5 * (pairs[1] + base);
+    const auto below =
+        std::find_if(pairs.begin() + 1, pairs.end(), [&](double value) { return value <= half; });
+    const double half_width = static_cast<double>(below - pairs.begin()) - 0.5;
+    return std::max(kNarrowest, half_width / (std::sqrt(2.0) * 1.1774)) *
+           capture.time_axis.bin_width_m;
 }
 
 double mean_outside(const core::Capture& capture, const std::vector<Peak>& peaks) {
@@ -147,15 +168,17 @@ struct PointInformation {
 };
 
 // Fisher information of the shared three, points eliminated; stores what the points' own errors
-// need, and the deviance.
+// need, the deviance and how it scatters.
 Eigen::Matrix3d schur_of_shared(const core::Capture& capture,
                                 const std::vector<Peak>& peaks,
                                 const Shared& shared,
                                 ResponseShape shape,
                                 std::vector<PointInformation>& points,
+                                double& scatter,
                                 DirectReturns& result) {
     using Jet = ceres::Jet<double, 5>;
     Eigen::Matrix3d total = Eigen::Matrix3d::Zero();
+    double variance = 0.0;
     for (const Peak& peak : peaks) {
         const Jet p[2]{Jet(peak.parameters[0], 0), Jet(peak.parameters[1], 1)};
         const Jet s[3]{Jet(shared[0], 2), Jet(shared[1], 3), Jet(shared[2], 4)};
@@ -169,7 +192,9 @@ Eigen::Matrix3d schur_of_shared(const core::Capture& capture,
                 capture.transient.histogram(index)[static_cast<std::size_t>(bin)]);
             const double residual = signed_deviance(safe, counted).value;
             result.deviance += residual * residual;
-            result.expected_deviance += deviance_moments(safe).mean;
+            const DevianceMoments moments = deviance_moments(safe);
+            result.expected_deviance += moments.mean;
+            variance += moments.variance;
         }
         const PointInformation& point = points.emplace_back(PointInformation{
             information.topLeftCorner<2, 2>(), information.topRightCorner<2, 3>()});
@@ -177,6 +202,7 @@ Eigen::Matrix3d schur_of_shared(const core::Capture& capture,
                  point.coupling.transpose() * point.own.inverse() * point.coupling;
     }
     if (!has_tail(shape)) total(1, 1) += 1.0;  // no tail to know
+    scatter = std::sqrt(variance);
     return total;
 }
 
@@ -186,8 +212,9 @@ void store_errors(const core::Capture& capture,
                   ResponseShape shape,
                   DirectReturns& result) {
     std::vector<PointInformation> points;
+    double scatter = 0.0;
     const Eigen::Matrix3d covariance =
-        schur_of_shared(capture, peaks, shared, shape, points, result).inverse();
+        schur_of_shared(capture, peaks, shared, shape, points, scatter, result).inverse();
     result.sigma_error_m = result.sigma_m * std::sqrt(covariance(0, 0));
     result.tail_error_m = result.tail_m * std::sqrt(covariance(1, 1));
     result.ambient_error = result.ambient * std::sqrt(covariance(2, 2));
@@ -198,11 +225,13 @@ void store_errors(const core::Capture& capture,
         const auto& [log_counts, opl_m] = peaks[p].parameters;
         result.points.push_back({opl_m, std::sqrt(whole(1, 1)), std::exp(log_counts)});
     }
+    result.warnings = peak_warnings(capture, result, scatter);
 }
 
 }  // namespace
 
 DirectReturns fit_direct_returns(const core::Capture& capture, ResponseShape shape) {
+    require_peaks(capture);
     const double width_m = rough_width(capture);
     std::vector<Peak> peaks;
     for (std::size_t p = 0; p < capture.transient.num_pairs(); ++p) {
@@ -233,11 +262,13 @@ DirectReturns fit_direct_returns(const core::Capture& capture, ResponseShape sha
     options.logging_type = ceres::SILENT;
     options.num_threads = 1;
     ceres::Solver::Summary summary;
+    quiet_ceres();
     ceres::Solve(options, &problem, &summary);
     if (summary.termination_type != ceres::CONVERGENCE) {
         throw core::Failure("direct_returns", "the peaks' fit did not converge");
     }
     DirectReturns result;
+    result.shape = shape;
     result.sigma_m = std::exp(shared[0]);
     result.tail_m = has_tail(shape) ? std::exp(shared[1]) : 0.0;
     result.ambient = std::exp(shared[2]);

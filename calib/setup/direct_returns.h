@@ -3,6 +3,7 @@
 
 #include "renderer/core/capture/capture.h"
 
+#include <string>
 #include <vector>
 
 namespace calib {
@@ -28,14 +29,16 @@ struct DirectReturns {
     double ambient_error = 0.0;
     double deviance = 0.0;
     double expected_deviance = 0.0;
+    ResponseShape shape = ResponseShape::Gaussian;  ///< without a tail where none was found
+    std::vector<std::string> warnings;
 };
 
 /// Fits a peak per point and one response for all by maximum likelihood, far below a bin's width.
 ///
 /// capture   counts with one direct return per histogram
 /// shape     of the response
-/// throws    core::Error when a histogram holds no light; core::Failure when the fit does not
-///           converge
+/// throws    core::Error when a histogram holds no light or negative counts; core::Failure when
+///           peaks are clipped, or the fit does not converge
 /// source    likelihood of Poisson counts; the response's cumulative distributions are core's
 DirectReturns fit_direct_returns(const core::Capture& capture, ResponseShape shape);
 

@@ -65,7 +65,7 @@ TrackedPosition read_target(const Json& json, const std::string& where) {
 Vec3 stated_position_m(const TargetEstimate& target, const TrackSettings& settings) {
     const Vec3 position_m = target.state.position_m();
     if (!settings.moves_sensor()) return position_m;
-    return settings.pose.position_m + (*settings.target.position_m - position_m);
+    return settings.pose.whole().position_m + (*settings.target.position_m - position_m);
 }
 
 core::Mat3 stated_covariance_m2(const TargetEstimate& target, const TrackSettings& settings) {
@@ -101,7 +101,7 @@ Json track_json(const std::vector<FrameEstimate>& frames,
     json["settings"] = core::write_value(settings);
     json["wall"] = core::write_value(sensor.wall);
     json["spots_m"] = Json::array();
-    for (const core::ZoneFootprint& zone : footprints_at(sensor, settings.pose).zones) {
+    for (const core::ZoneFootprint& zone : footprints_at(sensor, settings.pose.whole()).zones) {
         if (zone.center_m) json["spots_m"].push_back(core::write_value(*zone.center_m));
     }
     json["frames"] = Json::array();

@@ -12,6 +12,18 @@ void require_order(const std::array<double, 2>& range, const std::string& where)
 
 }  // namespace
 
+void PoseSettings::complete(const core::SensorPose& other) {
+    position_m = position_m.value_or(other.position_m);
+    forward = forward.value_or(other.forward);
+    up = up.value_or(other.up);
+}
+
+core::SensorPose PoseSettings::whole() const {
+    return {position_m.value_or(core::Vec3::UnitZ()),
+            forward.value_or(-core::Vec3::UnitZ()),
+            up.value_or(core::Vec3::UnitY())};
+}
+
 void validate(const TrackSettings& s, const std::string& where) {
     core::check_ranges(s, where);
     core::check_ranges(s.target, core::join_key(where, "target"));
@@ -24,7 +36,7 @@ void validate(const TrackSettings& s, const std::string& where) {
     if (s.search.x_range_m) require_order(*s.search.x_range_m, search + ".x_range_m");
     if (s.search.y_range_m) require_order(*s.search.y_range_m, search + ".y_range_m");
     require_order(s.search.z_range_m, search + ".z_range_m");
-    core::validate(s.pose, core::join_key(where, "pose"));
+    core::validate(s.pose.whole(), core::join_key(where, "pose"));
     for (std::size_t i = 0; i < s.poses.size(); ++i) {
         core::validate(s.poses[i], core::join_key(where, "poses") + "[" + std::to_string(i) + "]");
     }

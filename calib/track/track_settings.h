@@ -69,10 +69,23 @@ struct SearchSettings {
     double cell_m = 0.12;
 };
 
+/// Where a sensor is and looks, as far as it is stated.
+struct PoseSettings {
+    std::optional<core::Vec3> position_m;
+    std::optional<core::Vec3> forward;
+    std::optional<core::Vec3> up;
+
+    bool is_stated() const { return position_m || forward || up; }
+    /// Takes from another pose what is not stated.
+    void complete(const core::SensorPose& other);
+    /// The pose, completed by one that looks at the wall z = 0 from a metre before its centre.
+    core::SensorPose whole() const;
+};
+
 /// All that MODEL.json of `nlos track` says.
 struct TrackSettings {
     std::string sensor;
-    core::SensorPose pose{core::Vec3(0.0, 0.0, 1.0), -core::Vec3::UnitZ(), core::Vec3::UnitY()};
+    PoseSettings pose;
     std::vector<core::SensorPose> poses;
     std::optional<core::RelayWall> wall;
     int subsamples = 3;
@@ -178,6 +191,15 @@ void for_each_field(SearchSettings& s, Visitor&& visit) {
           core::Ranged{"the same along y [m]; null: up to 0.75 m beyond", {}});
     visit("z_range_m", s.z_range_m, core::above(0, "distances from the wall [m]"));
     visit("cell_m", s.cell_m, core::above(0, "pitch of the grid on which targets are found [m]"));
+}
+
+template <class Visitor>
+void for_each_field(PoseSettings& s, Visitor&& visit) {
+    visit("position_m",
+          s.position_m,
+          "receiving lens, world; null: as the frames say, else a metre before the wall z = 0 [m]");
+    visit("forward", s.forward, "direction of view; null: as the frames say, else along -z");
+    visit("up", s.up, "upwards, up to its part along the view; null: as the frames say, else y");
 }
 
 template <class Visitor>

@@ -37,7 +37,7 @@ Tracker::Tracker(const TrackSettings& settings, const TrackSensor& sensor)
     : settings_(settings),
       sensor_(sensor),
       motion_(settings.motion),
-      pose_(settings.poses.empty() ? settings.pose : settings.poses.front()),
+      pose_(settings.poses.empty() ? settings.pose.whole() : settings.poses.front()),
       background_(
           settings.background, sensor.num_zones(), static_cast<std::size_t>(sensor.axis.num_bins)) {
     if (settings_.moves_sensor()) {
@@ -85,7 +85,7 @@ void Tracker::aim(const core::SensorPose& pose) {
 void Tracker::learn_background(const std::vector<TrackFrame>& frames) {
     std::vector<std::vector<double>> counts;
     for (const TrackFrame& frame : frames) {
-        check(frame);
+        validate(frame, response_->num_zones(), response_->num_bins());
         if (!frame.counts.empty()) counts.push_back(frame.counts);
     }
     if (counts.empty()) {
@@ -93,14 +93,6 @@ void Tracker::learn_background(const std::vector<TrackFrame>& frames) {
     }
     FrameEstimate unused;
     background_.learn_all(counts, weights_of(frames.front(), unused));
-}
-
-void Tracker::check(const TrackFrame& frame) const {
-    if (frame.counts.empty() || frame.counts.size() == response_->size()) return;
-    throw core::Error(
-        fmt::format("frame at {:.6g} s", frame.time_s),
-        fmt::format("found {} numbers", frame.counts.size()),
-        fmt::format("must be {} zones of {} bins", response_->num_zones(), response_->num_bins()));
 }
 
 void Tracker::warn_once(const std::string& text, FrameEstimate& estimate) {
@@ -291,7 +283,7 @@ void Tracker::report(FrameEstimate& estimate) const {
 }
 
 FrameEstimate Tracker::step(const TrackFrame& frame) {
-    check(frame);
+    validate(frame, response_->num_zones(), response_->num_bins());
     FrameEstimate estimate;
     estimate.time_s = frame.time_s;
     if (last_time_s_ && !(frame.time_s > *last_time_s_)) {

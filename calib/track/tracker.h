@@ -5,9 +5,9 @@
 #include "calib/track/joint_update.h"
 #include "calib/track/target_search.h"
 #include "calib/track/target_state.h"
+#include "calib/track/track_frame.h"
 #include "calib/track/track_sensor.h"
 #include "calib/track/track_settings.h"
-#include "renderer/core/capture/observed_bins.h"
 
 #include <memory>
 #include <optional>
@@ -21,14 +21,6 @@
 // what probability it is there [Ristic2013]. smooth() looks back at a whole track.
 
 namespace calib {
-
-/// A frame of histograms.
-struct TrackFrame {
-    double time_s = 0.0;
-    std::vector<double> counts;            ///< [zone][bin]; empty: the frame is missing
-    core::ObservedBins observed;           ///< nothing: all bins
-    std::optional<core::SensorPose> pose;  ///< nothing: the settings' own
-};
 
 /// What is believed of one target after a frame.
 struct TargetEstimate {
@@ -63,7 +55,8 @@ class Tracker {
     /// Learns the background from frames without a target.
     void learn_background(const std::vector<TrackFrame>& frames);
 
-    /// Takes the next frame. Throws core::Error when its size is another than the sensor's.
+    /// Takes the next frame.
+    /// throws   core::Error for a frame that is not one of the sensor's, see validate(TrackFrame)
     FrameEstimate step(const TrackFrame& frame);
 
     /// Expected of background and named targets after the last frame; [zone][bin].
@@ -72,7 +65,6 @@ class Tracker {
     const TrackSensor& sensor() const { return sensor_; }
 
  private:
-    void check(const TrackFrame& frame) const;
     void aim(const core::SensorPose& pose);
     std::vector<double> weights_of(const TrackFrame& frame, FrameEstimate& estimate);
     double dispersion_of(const TrackFrame& frame, const std::vector<double>& weights);

@@ -192,17 +192,23 @@ void validate(const DetectorSettings& settings) {
 
 std::optional<std::string> coarse_bins_warning(const core::Capture& capture,
                                                const DetectorSettings& settings) {
-    constexpr double kFewBins = 2.0;  // standard deviations of the response; 1 % of its width
     if (!core::is_stated(settings.response)) return std::nullopt;
     const core::ResponseMoments response =
         core::moments(core::make_response(settings.response, "response"));
-    const double bins = std::sqrt(response.variance_m2) / capture.time_axis.bin_width_m;
-    if (bins == 0.0 || bins >= kFewBins) return std::nullopt;
+    const double width_m = capture.time_axis.bin_width_m;
+    const double fwhm_ps = std::sqrt(response.variance_m2) / core::sigma_m_from_fwhm_ps(1.0);
+    const double widest_m = core::widest_bin_m(fwhm_ps);
+    if (widest_m == 0.0 || width_m <= widest_m) return std::nullopt;
+    const double bins = 0.5 * width_m / widest_m;  // per standard deviation of the response
     return fmt::format(
-        "the response is {:.2g} bins wide (standard deviation): sharp edges come "
-        "out up to {:.2g} % narrower than it; finer bins of light help",
-        bins,
-        100.0 * (1.0 - std::sqrt(std::max(0.0, 1.0 - 1.0 / (12.0 * bins * bins)))));
+        "a response of {:.3g} ps (FWHM) is narrow beside bins of {:.3g} ps: sharp edges come out "
+        "up to {:.2g} % narrower than it; light in bins of {:.2g} ps helps, "
+        "time_axis.bin_width_ps={:.2g}",
+        fwhm_ps,
+        1e12 * width_m / core::kSpeedOfLight,
+        100.0 * (1.0 - std::sqrt(std::max(0.0, 1.0 - bins * bins / 12.0))),
+        1e12 * widest_m / core::kSpeedOfLight,
+        1e12 * widest_m / core::kSpeedOfLight);
 }
 
 core::Capture detect(const core::Capture& capture, const DetectorSettings& settings) {

@@ -131,9 +131,11 @@ std::vector<std::string> describe_capture(const core::Capture& capture) {
         lines.insert(lines.end(), of_sensor.begin(), of_sensor.end());
     }
     lines.push_back(
-        fmt::format("time axis: {} bins of {:.6g} m of path length, from {:.6g} to {:.6g} m",
+        fmt::format("time axis: {} bins of {:.6g} m of path length ({:.4g} ps), from {:.6g} to "
+                    "{:.6g} m",
                     axis.num_bins,
                     axis.bin_width_m,
+                    axis.bin_width_ps(),
                     axis.opl_start_m,
                     axis.opl_end_m()));
     if (scan.has_wall()) {

@@ -89,24 +89,81 @@ void refuse_two_setups(const core::Json& keys, const std::string& where) {
     }
 }
 
+// Puts a length that is stated in picoseconds in place of the one in metres; `key` is without unit.
+void take_picoseconds(const core::Json& json,
+                      const std::string& key,
+                      std::optional<double>& picoseconds,
+                      double& metres) {
+    if (!picoseconds) return;
+    const std::string in_metres = key.substr(key.rfind('.') + 1) + "_m";
+    if (json.contains(in_metres)) {
+        throw Error(key + "_ps", "found together with " + in_metres, "must be one of them");
+    }
+    core::check_range(*picoseconds, {}, key + "_ps");
+    metres = core::opl_from_seconds(1e-12 * *picoseconds);
+    picoseconds.reset();
+}
+
+// Widths of bins come first: they decide what else is automatic.
+void sort_axis_overrides(std::vector<std::string>& overrides) {
+    const auto is_width = [](const std::string& text) {
+        return text.starts_with("time_axis.bin_width_");
+    };
+    std::ranges::stable_partition(overrides, is_width);
+    for (const char* length : {"bin_width", "opl_start"}) {
+        const auto has = [&](const char* unit) {
+            return std::ranges::any_of(overrides, [&](const std::string& text) {
+                return text.starts_with(fmt::format("time_axis.{}_{}=", length, unit));
+            });
+        };
+        if (!has("m") || !has("ps")) continue;
+        throw Error(fmt::format("--set time_axis.{}_ps", length),
+                    fmt::format("found together with {}_m", length),
+                    "must be one of them");
+    }
+}
+
 }  // namespace
 
 void read_value(const core::Json& json, const std::string& where, SceneTimeAxis& axis) {
-    axis.automatic = json == "auto";
-    if (axis.automatic) return;
+    if (json == "auto") {
+        axis = {};
+        axis.automatic = true;
+        return;
+    }
     if (!json.is_object()) {
         core::throw_wrong_type(where, json, "auto, or an object with named fields");
     }
     core::read_value<SceneTimeAxis>(json, where, axis);
+    const bool has_width_ps = axis.bin_width_ps.has_value();
+    const bool has_start_ps = axis.opl_start_ps.has_value();
+    take_picoseconds(json, where + ".bin_width", axis.bin_width_ps, axis.bin_width_m);
+    take_picoseconds(json, where + ".opl_start", axis.opl_start_ps, axis.opl_start_m);
+    const bool has_width = has_width_ps || json.contains("bin_width_m");
+    if (has_width_ps || (axis.automatic && has_width)) {
+        axis.automatic = true;
+        axis.stated = {.bin_width = true};
+    }
+    axis.stated.opl_start |= has_start_ps || json.contains("opl_start_m");
+    axis.stated.num_bins |= json.contains("num_bins");
+    axis.automatic &= axis.stated.bin_width && !(axis.stated.opl_start && axis.stated.num_bins);
+    if (!axis.automatic) axis.stated = {};
 }
 
 core::Json write_value(const SceneTimeAxis& axis) {
-    return axis.automatic ? core::Json("auto") : core::write_value<SceneTimeAxis>(axis);
+    core::Json json = core::write_value(static_cast<const core::TimeAxis&>(axis));
+    if (!axis.automatic) return json;
+    if (!axis.stated.bin_width) return "auto";
+    core::Json stated{{"bin_width_ps", 1e12 * axis.bin_width_m / core::kSpeedOfLight}};
+    if (axis.stated.opl_start) stated["opl_start_m"] = json["opl_start_m"];
+    if (axis.stated.num_bins) stated["num_bins"] = json["num_bins"];
+    return stated;
 }
 
 SceneDescription read_scene_description(const std::string& path,
-                                        const std::vector<std::string>& overrides) {
+                                        std::vector<std::string> overrides) {
     SceneDescription scene;
+    sort_axis_overrides(overrides);
     core::Json keys = core::read_json_file(path);
     core::read_value(keys, path + ": ", scene);
     const std::string folder = std::filesystem::path(path).parent_path().string();
@@ -138,7 +195,8 @@ void change_description(SceneDescription& scene, const core::Json& changes) {
 void validate(const SceneDescription& scene, const std::string& where) {
     validate_geometry(scene, where);
     measurement_of(scene).validate(scene, where);
-    if (!scene.time_axis.automatic) core::validate(scene.time_axis, where + "time_axis");
+    core::validate(scene.time_axis, where + "time_axis");
+    if (scene.detector) core::check_ranges(*scene.detector, where + "detector");
     if (scene.velocity_axis) core::validate(*scene.velocity_axis, where + "velocity_axis");
     if (scene.frames) core::check_ranges(*scene.frames, where + "frames");
     validate(scene.render, where + "render");

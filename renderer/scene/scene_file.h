@@ -65,9 +65,24 @@ struct FrameSettings {
 };
 
 /// The bins of path length: an object, or the text `auto`, which leaves the choice to geometry and
-/// scan.
+/// scan. A bin width in picoseconds, or one in metres of what was `auto`, leaves the choice of what
+/// is not stated beside it.
 struct SceneTimeAxis : core::TimeAxis {
-    bool automatic = false;  ///< still to be chosen; see choose_time_axis()
+    bool automatic = false;  ///< what is not stated is still to be chosen; see choose_time_axis()
+    struct Stated {
+        bool bin_width = false;
+        bool opl_start = false;
+        bool num_bins = false;
+    };
+    Stated stated{};  ///< of an automatic axis
+
+    std::optional<double> bin_width_ps{};  ///< as read, before it becomes metres; likewise
+    std::optional<double> opl_start_ps{};
+};
+
+/// What is known of the detector that will count the light.
+struct SceneDetector {
+    double jitter_fwhm_ps = 0.0;
 };
 
 struct GroundTruthSettings {
@@ -85,6 +100,7 @@ struct SceneDescription {
     ScanSettings scan;
     std::optional<CameraSettings> camera;  ///< replaces relay_wall and scan
     SceneTimeAxis time_axis;
+    std::optional<SceneDetector> detector;            ///< nothing: not known
     std::optional<core::VelocityAxis> velocity_axis;  ///< nothing: velocities are not resolved
     std::optional<FrameSettings> frames;              ///< nothing: one frame
     RenderSettings render;
@@ -146,6 +162,23 @@ void read_value(const core::Json& json, const std::string& where, CameraSettings
 template <class Visitor>
 void for_each_field(SceneTimeAxis& axis, Visitor&& visit) {
     for_each_field(static_cast<core::TimeAxis&>(axis), visit);
+    visit("bin_width_ps",
+          axis.bin_width_ps,
+          core::above(0,
+                      "instead of bin_width_m: width of a bin in time [ps]; start and number of "
+                      "bins are automatic where they are not stated beside it"));
+    visit("opl_start_ps",
+          axis.opl_start_ps,
+          core::Ranged{"instead of opl_start_m: time at the start of bin 0 [ps]", {}});
+}
+
+template <class Visitor>
+void for_each_field(SceneDetector& detector, Visitor&& visit) {
+    visit("jitter_fwhm_ps",
+          detector.jitter_fwhm_ps,
+          core::at_least(0,
+                         "full width at half maximum of pulse and jitter: bins of an automatic "
+                         "time axis are fine enough for it, and simulate-noise takes it [ps]"));
 }
 
 /// A time axis is an object with fields or the text `auto`.
@@ -187,6 +220,7 @@ void for_each_field(SceneDescription& scene, Visitor&& visit) {
           "instead of relay_wall and scan: an image; position_m, look_at_m, up, fov_y_deg, "
           "resolution, light_m, light_spot_m, or the name of a glTF camera");
     visit("time_axis", scene.time_axis, "bins of optical path length, or auto");
+    visit("detector", scene.detector, "what is known of the detector that will count the light");
     visit("velocity_axis",
           scene.velocity_axis,
           "Doppler: bins of path velocity; start_m_per_s, bin_width_m_per_s, num_bins, with_time, "
@@ -200,7 +234,7 @@ void for_each_field(SceneDescription& scene, Visitor&& visit) {
 /// pose from the glTF file.
 /// throws   core::Error naming file, key, what was found and what is allowed
 SceneDescription read_scene_description(const std::string& path,
-                                        const std::vector<std::string>& overrides);
+                                        std::vector<std::string> overrides);
 
 /// Changes a description, valid or of defaults, by keys of scene.json with new values.
 /// throws   core::Error naming key, what was found and what is allowed

@@ -63,7 +63,8 @@ void look_up_sensor(const std::string& folder,
                     SceneDescription& scene) {
     if (scene.scan.sensor) read_sensor(folder, where + "scan.sensor", *scene.scan.sensor);
     if (!scene.scan.pattern.of_sensor || !scene.scan.sensor) return;
-    if (scene.time_axis.automatic || !keys.contains("time_axis")) {
+    const bool is_open = scene.time_axis.automatic && !scene.time_axis.stated.bin_width;
+    if (is_open || !keys.contains("time_axis")) {
         scene.time_axis = {scene.scan.sensor->time_axis()};
     }
 }

@@ -66,16 +66,18 @@ TEST_F(CommandLine, ResponsesOfCapturesAreOffered) {
         run("simulate-noise data/letter.h5 -o " + counts + " --photons 1e6 --jitter-fwhm-ps 100")
             .status,
         0);
-    // auto takes what the file states; a method that is asked for does when it is told so.
-    ASSERT_EQ(run("reconstruct " + counts + " -o " + file("v.h5")).status, 0);
-    EXPECT_EQ(nlos::read_volume(file("v.h5")).settings.response.jitter_fwhm_ps, 100.0);
-    const std::string reconstruct = "reconstruct " + counts + " --method lct -o " + file("v.h5");
-    const Outcome ignored = run(reconstruct);
-    EXPECT_NE(ignored.err.find("response=capture"), std::string::npos) << ignored.err;
-    const Outcome used = run(reconstruct + " --set response=capture");
-    EXPECT_EQ(used.status, 0) << used.err;
-    EXPECT_EQ(used.err.find("response"), std::string::npos) << used.err;
-    EXPECT_EQ(nlos::read_volume(file("v.h5")).settings.response.jitter_fwhm_ps, 100.0);
+    // Every method takes what the file states, unless it is told otherwise.
+    for (const std::string& method : {"auto", "lct", "bp"}) {
+        const Outcome used =
+            run("reconstruct " + counts + " --method " + method + " -o " + file("v.h5"));
+        EXPECT_EQ(used.status, 0) << used.err;
+        EXPECT_EQ(used.err.find("response"), std::string::npos) << used.err;
+        EXPECT_EQ(nlos::read_volume(file("v.h5")).settings.response.jitter_fwhm_ps, 100.0);
+    }
+    const Outcome ignored =
+        run("reconstruct " + counts + " --method lct --set response=none -o " + file("v.h5"));
+    EXPECT_EQ(ignored.err.find("response"), std::string::npos) << ignored.err;
+    EXPECT_TRUE(nlos::read_volume(file("v.h5")).settings.response.is_none);
     EXPECT_NE(run("info " + counts).out.find("response of 100 ps"), std::string::npos);
     expect_bad_input("reconstruct data/letter.h5 -o " + file("w.h5") + " --set response=capture",
                      "states no response");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/light_range.h"
 
+#include "renderer/core/capture/instrument_response.h"
 #include "renderer/render.h"
 #include "tests/support/error_message.h"
 #include "tests/support/test_scenes.h"
@@ -72,6 +73,36 @@ TEST(LightRange, AutomaticAxesHoldAllThirdBounces) {
         EXPECT_LE(axis.num_bins, 4097);
         EXPECT_TRUE(renderer::axis_warnings(*range, axis, {}).empty());
     }
+}
+
+TEST(LightRange, StatedBinsOfAnAutomaticAxisStay) {
+    const core::TimeAxis wide{0.0, 0.01, 1000};
+    const core::Scan scan = grid_scan(12);
+    const renderer::Scene scene = panel_scene(scan);
+    const auto range = renderer::find_light_range(scene, scan, {});
+    renderer::SceneDescription description = description_of({0.0, 0.0029979, 512});
+    description.time_axis.stated.bin_width = true;
+    const core::TimeAxis fine = renderer::choose_time_axis(range, scene, scan, description);
+    EXPECT_EQ(fine.bin_width_m, 0.0029979);
+    EXPECT_NEAR(light_on(fine, scene, scan) / light_on(wide, scene, scan), 1.0, 1e-6);
+    EXPECT_LT(fine.num_bins * fine.bin_width_m,
+              1.1 * (range->possible_m[1] - range->possible_m[0]));
+    description.time_axis.stated.num_bins = true;
+    EXPECT_EQ(renderer::choose_time_axis(range, scene, scan, description).num_bins, 512);
+}
+
+TEST(LightRange, AutomaticBinsAreFineEnoughForTheDetector) {
+    const core::Scan scan = grid_scan(12);
+    const renderer::Scene scene = panel_scene(scan);
+    const auto range = renderer::find_light_range(scene, scan, {});
+    renderer::SceneDescription description = description_of();
+    const double usual = renderer::choose_time_axis(range, scene, scan, description).bin_width_m;
+    description.detector = renderer::SceneDetector{60.0};
+    const core::TimeAxis fine = renderer::choose_time_axis(range, scene, scan, description);
+    EXPECT_LT(fine.bin_width_m, usual);
+    EXPECT_LE(fine.bin_width_m, 0.5 * core::sigma_m_from_fwhm_ps(60.0));
+    description.detector = renderer::SceneDetector{6000.0};
+    EXPECT_EQ(renderer::choose_time_axis(range, scene, scan, description).bin_width_m, usual);
 }
 
 TEST(LightRange, AutomaticAxesScaleWithTheScene) {

@@ -169,7 +169,7 @@ def calibrate(setup: Path, **settings: Any) -> dict[str, Any]:
     """Calibrates wall, spots, time zero and response of a set-up.
 
     setup     SETUP.json with the direct returns and commands
-    settings  its keys with other values
+    settings  its keys with other values, and ``capture={...}`` for what its file leaves open
     returns   what CALIBRATION.json holds, for ``calibration=`` of the other functions
     """
     return _core.calibrate(_path(setup, "setup"), settings)

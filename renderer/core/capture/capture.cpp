@@ -30,6 +30,19 @@ void validate_histograms(const Capture& capture,
     }
 }
 
+void validate_sequence(const Capture& capture, const std::string& where) {
+    const FrameSequence& sequence = *capture.sequence;
+    require(!sequence.frames.empty(), where + ": frames", "none", "one and more");
+    check_range(sequence.frame_s, {.low = 0.0, .with_low = true}, where + ": frame_s");
+    check_range(sequence.gate_step_m, {}, where + ": gate_step_m");
+    for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
+        validate_histograms(capture,
+                            sequence.frames[i],
+                            capture.time_axis.num_bins,
+                            fmt::format("{}: frame {}", where, i));
+    }
+}
+
 /// Throws unless there is one range per pair, each within the axis.
 void validate_ranges(const Capture& capture,
                      const std::vector<BinRange>& ranges,
@@ -129,10 +142,7 @@ void validate(const Capture& capture, const std::string& where) {
     for (const Transient& order : capture.by_order) {
         validate_histograms(capture, order, num_bins, where + ": H_by_order");
     }
-    for (std::size_t i = 0; capture.sequence && i < capture.sequence->frames.size(); ++i) {
-        validate_histograms(
-            capture, capture.sequence->frames[i], num_bins, fmt::format("{}: frame {}", where, i));
-    }
+    if (capture.sequence) validate_sequence(capture, where);
     validate_observed(capture, where);
 }
 

@@ -179,13 +179,17 @@ void trim(ResponseFilter& filter) {
 
 void read_value(const Json& json, const std::string& where, ResponseSettings& settings) {
     settings.of_capture = json == "capture";
-    if (settings.of_capture) return;
-    if (!json.is_object()) throw_wrong_type(where, json, "capture, or an object with named fields");
+    settings.is_none = json == "none";
+    if (settings.of_capture || settings.is_none) return;
+    if (!json.is_object()) {
+        throw_wrong_type(where, json, "capture, none, or an object with named fields");
+    }
     read_value<ResponseSettings>(json, where, settings);
 }
 
 Json write_value(const ResponseSettings& settings) {
-    return settings.of_capture ? Json("capture") : write_value<ResponseSettings>(settings);
+    if (settings.of_capture) return "capture";
+    return settings.is_none ? Json("none") : write_value<ResponseSettings>(settings);
 }
 
 InstrumentResponse make_response(const ResponseSettings& settings, const std::string& where) {
@@ -209,6 +213,10 @@ InstrumentResponse make_response(const ResponseSettings& settings, const std::st
         return ExponentialGaussianResponse{sigma_m, opl_from_ps(settings.tail_ps)};
     }
     return GaussianResponse{sigma_m};
+}
+
+double widest_bin_m(double fwhm_ps) {
+    return 0.5 * sigma_m_from_fwhm_ps(fwhm_ps);
 }
 
 double sigma_m_from_fwhm_ps(double fwhm_ps) {

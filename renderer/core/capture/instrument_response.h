@@ -39,13 +39,15 @@ struct MeasuredResponse {
 using InstrumentResponse =
     std::variant<GaussianResponse, ExponentialGaussianResponse, MeasuredResponse>;
 
-/// The response as users state it, in picoseconds; all 0 and empty: none. The text `capture` asks
-/// for the one that a capture's provenance states, see recorded_detector.h.
+/// The response as users state it, in picoseconds; all 0 and empty: what a capture's provenance
+/// states, if it does. The text `capture` insists on that, and `none` on no response; see
+/// recorded_detector.h.
 struct ResponseSettings {
     double jitter_fwhm_ps = 0.0;
     double tail_ps = 0.0;
     std::string curve;
     bool of_capture = false;
+    bool is_none = false;
 };
 
 template <class Visitor>
@@ -73,6 +75,10 @@ InstrumentResponse make_response(const ResponseSettings& settings, const std::st
 
 /// Standard deviation in path length [m] of a Gaussian of this full width at half maximum [ps].
 double sigma_m_from_fwhm_ps(double fwhm_ps);
+
+/// The widest bins in which a Gaussian response of this full width at half maximum shows: half its
+/// standard deviation, which loses less than 1 % of its width.
+double widest_bin_m(double fwhm_ps);
 
 /// First moments of the delays.
 struct ResponseMoments {

@@ -78,35 +78,39 @@ std::optional<double> recorded_spot_m(const Capture& capture) {
 ResponseSettings resolve_response(const ResponseSettings& asked,
                                   const Capture& capture,
                                   const std::string& where) {
-    if (!asked.of_capture) return asked;
     const auto recorded = recorded_response(capture);
-    require(recorded.has_value(),
-            where,
-            "capture, whose provenance states no response",
-            "jitter_fwhm_ps, tail_ps or curve");
-    return *recorded;
+    if (asked.of_capture) {
+        require(recorded.has_value(),
+                where,
+                "capture, whose provenance states no response",
+                "jitter_fwhm_ps, tail_ps or curve");
+        return *recorded;
+    }
+    const bool is_open = !is_stated(asked) && !asked.is_none;
+    const bool counts = recorded && matters(*recorded, capture.time_axis.bin_width_m);
+    return is_open && counts ? *recorded : asked;
 }
 
-std::vector<std::string> detector_warnings(const Capture& capture, const ResponseSettings& used) {
+ResponseSettings resolve_scene_response(const ResponseSettings& asked, const Capture& capture) {
+    const Json::json_pointer jitter("/settings/detector/jitter_fwhm_ps");
+    if (is_stated(asked) || asked.is_none) return asked;
+    ResponseSettings response;
+    if (capture.scene_info->contains(jitter) && (*capture.scene_info)[jitter].is_number()) {
+        response.jitter_fwhm_ps = (*capture.scene_info)[jitter].get<double>();
+    }
+    return response;
+}
+
+std::optional<std::string> detector_warning(const Capture& capture) {
     constexpr double kNotablePileUp = 0.05;
-    std::vector<std::string> warnings;
     const Json* detector = detector_of(capture);
-    if (detector == nullptr) return warnings;
-    const auto response = recorded_response(capture);
-    if (response && !is_stated(used) && matters(*response, capture.time_axis.bin_width_m)) {
-        warnings.push_back(fmt::format(
-            "the capture was recorded with {}, which is left aside; response=capture uses it",
-            describe(*response)));
-    }
-    const double pulses = number_at(*detector, "pulses");
+    const double pulses = detector != nullptr ? number_at(*detector, "pulses") : 0.0;
     const double share = pulses > 0.0 ? largest_share_of_pulses(capture, pulses) : 0.0;
-    if (share > kNotablePileUp) {
-        warnings.push_back(
-            fmt::format("the detector was blind after photons, up to {:.2g} per pulse: early light "
-                        "hides late light (pile-up), which is not modelled",
-                        share));
-    }
-    return warnings;
+    if (share <= kNotablePileUp) return std::nullopt;
+    return fmt::format(
+        "the detector was blind after photons, up to {:.2g} per pulse: early light "
+        "hides late light (pile-up), which is not modelled",
+        share);
 }
 
 }  // namespace core

@@ -26,18 +26,20 @@ std::optional<ResponseSettings> recorded_response(const Capture& capture);
 /// lit and saw [m], as layouts of files that hold it state it; nothing when it says none.
 std::optional<double> recorded_spot_m(const Capture& capture);
 
-/// The response asked for; that of the capture when the text `capture` was.
+/// The response asked for; where none is, that of the capture, if it states one of more than half a
+/// bin.
 ///
-/// throws   Error naming `where` when the capture's provenance states none
+/// throws   Error naming `where` when `capture` is asked for, and its provenance states none
 ResponseSettings resolve_response(const ResponseSettings& asked,
                                   const Capture& capture,
                                   const std::string& where);
 
-/// What a capture's provenance states of its detector that is left aside although it matters: a
-/// response of more than half a bin that is not among what is used, and pile-up of more than a few
-/// photons in a hundred. A sentence each, for people.
-///
-/// used   response that is taken into account
-std::vector<std::string> detector_warnings(const Capture& capture, const ResponseSettings& used);
+/// The response asked for, of a detector that is to count this light; where none is, the jitter of
+/// the detector that the light was rendered for, if its scene states one.
+ResponseSettings resolve_scene_response(const ResponseSettings& asked, const Capture& capture);
+
+/// What a capture's provenance states of its detector that no method models: pile-up of more than a
+/// few photons in a hundred. A sentence, for people.
+std::optional<std::string> detector_warning(const Capture& capture);
 
 }  // namespace core

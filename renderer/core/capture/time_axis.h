@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/core/settings.h"
+#include "renderer/core/types.h"
 
 #include <fmt/core.h>
 
@@ -15,6 +16,7 @@ struct TimeAxis {
     double bin_width_m = 0.008;
     int num_bins = 512;
 
+    double bin_width_ps() const { return 1e12 * bin_width_m / kSpeedOfLight; }
     double opl_end_m() const { return opl_start_m + num_bins * bin_width_m; }
     double bin_begin_m(double bin) const { return opl_start_m + bin * bin_width_m; }
     double bin_center_m(double bin) const { return opl_start_m + (bin + 0.5) * bin_width_m; }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // nlos track as its users call it: frames from files and as lines, and what it refuses.
+#include "nlos/formats/capture_file.h"
 #include "renderer/core/settings_json.h"
 #include "tests/apps/commands/simulated_walk.h"
 #include "tests/support/command_line.h"
@@ -7,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -162,6 +164,52 @@ TEST_F(TrackScene, FindsTheWayOfASensorBeforeATargetThatStands) {
     const Json metrics = scores(scene, model, truth);
     EXPECT_LT(metrics["track_rmse_m"].get<double>(), 0.03);
     EXPECT_GE(metrics["track_coverage"].get<double>(), 0.8);
+}
+
+/// The guide's frames, changed by a test.
+class TrackFile : public TrackCommand {
+ protected:
+    core::Capture capture = nlos::read_capture(NLOS_SOURCE_DIR "/data/walk/counts.h5");
+
+    TrackFile() { capture.sequence->frames.resize(12, capture.transient); }
+
+    std::string track(const std::string& more = "") {
+        nlos::write_capture(file("frames.h5"), capture);
+        return "track " + file("frames.h5") + " data/walk/track.json -o " + file("track.json") +
+               more;
+    }
+};
+
+TEST_F(TrackFile, ChecksFramesAsThoseOfLines) {
+    const core::Capture good = capture;
+    const Outcome sound = run(track());
+    EXPECT_EQ(sound.status, 0) << sound.err;
+    EXPECT_EQ(sound.err.find("warning"), std::string::npos) << sound.err;
+
+    capture.sequence->frames[3].histogram(2)[7] = -4.0F;
+    expect_bad_input(track(), "frame 3, zone 2: found -4 in bin 7");
+    for (const double wrong : {-0.03,
+                               std::numeric_limits<double>::quiet_NaN(),
+                               std::numeric_limits<double>::infinity()}) {
+        capture = good;
+        capture.sequence->frame_s = wrong;
+        expect_bad_input(track(), "frame_s");
+    }
+    capture = good;
+    capture.sequence->frame_s = 0.0;
+    EXPECT_NE(run(track()).err.find("do not say how far apart"), std::string::npos);
+    EXPECT_EQ(run(track(" --set frame_s=0.0333")).err.find("warning"), std::string::npos);
+    capture.sequence->frames.clear();
+    expect_bad_input(track(), "frames: found none");
+}
+
+TEST_F(TrackFile, UsesThePoseThatIsStated) {
+    ASSERT_EQ(run(track(" --set pose.position_m=[0.1,0,1.2]")).status, 0);
+    const Json settings = core::read_json_file(file("track.json"))["settings"];
+    EXPECT_EQ(settings["pose"]["position_m"], Json({0.1, 0.0, 1.2}));
+    EXPECT_EQ(settings["pose"]["forward"], Json({0.1, 0.0, -1.0}));  // as the capture says
+    expect_bad_input(track(" --set pose.position_m=[0,0,-1]"), "pose");
+    expect_bad_input(track(" --set pose.forward=[0,0,1]"), "pose");
 }
 
 TEST_F(TrackCommand, RefusesBadLinesInOneLine) {

@@ -2,6 +2,7 @@
 #include "calib/track/tracker.h"
 
 #include "calib/track/compare_tracks.h"
+#include "calib/track/reversed_time.h"
 #include "tests/calib/track/track_example.h"
 #include "tests/support/error_message.h"
 
@@ -173,6 +174,56 @@ TEST(Tracker, NamesTheSizeOfFramesThatDoNotFit) {
     TrackFrame frame;
     frame.counts.assign(10, 1.0);
     EXPECT_ERROR_WITH(tracker.step(frame), "must be 9 zones of 64 bins");
+}
+
+TEST(Tracker, NamesWhatIsNoCountWithItsZone) {
+    for (const double wrong : {-1.0,
+                               std::numeric_limits<double>::quiet_NaN(),
+                               std::numeric_limits<double>::infinity()}) {
+        calib::Tracker tracker(small_settings(), small_sensor());
+        TrackFrame frame;
+        frame.name = "line 3";
+        frame.counts.assign(9 * 64, 1.0);
+        frame.counts[64 + 5] = wrong;
+        EXPECT_ERROR_WITH(tracker.step(frame), "line 3, zone 1: found");
+        EXPECT_ERROR_WITH(tracker.learn_background({frame}), "in bin 5");
+    }
+    calib::Tracker tracker(small_settings(), small_sensor());
+    TrackFrame frame;
+    frame.time_s = std::numeric_limits<double>::infinity();
+    EXPECT_ERROR_WITH(tracker.step(frame), "time");
+    frame.time_s = 0.0;
+    frame.pose = core::SensorPose{Vec3(0, 0, -1), -Vec3::UnitZ(), Vec3::UnitY()};
+    EXPECT_ERROR_WITH(tracker.step(frame), "no zone sees the relay wall");
+}
+
+TEST(Tracker, TimeThatRunsBackwardsIsNamed) {
+    auto frames = frames_of(30, [](int f) { return std::vector{walk(f)}; });
+    const auto warning = [&] {
+        return calib::reversed_time_warning(
+            small_settings(), small_sensor(), frames, {}, track(frames));
+    };
+    EXPECT_FALSE(warning());
+    for (TrackFrame& frame : frames) {
+        for (std::size_t zone = 0; zone < 9; ++zone) {
+            const auto begin = frame.counts.begin() + static_cast<std::ptrdiff_t>(64 * zone);
+            std::reverse(begin, begin + 64);
+        }
+    }
+    const auto text = warning();
+    ASSERT_TRUE(text);
+    EXPECT_NE(text->find("time looks reversed"), std::string::npos) << *text;
+    frames = frames_of(30, [](int) { return std::vector<Vec3>(); });
+    EXPECT_FALSE(warning());
+}
+
+TEST(TrackSettings, PosesAreCompletedByWhatIsKnown) {
+    calib::PoseSettings pose;
+    pose.position_m = Vec3(1, 2, 3);
+    pose.complete({Vec3(0, 0, 9), Vec3(0.1, 0, -1), Vec3::UnitX()});
+    EXPECT_EQ(pose.whole().position_m, Vec3(1, 2, 3));
+    EXPECT_EQ(pose.whole().forward, Vec3(0.1, 0, -1));
+    EXPECT_EQ(calib::PoseSettings{}.whole().position_m, Vec3::UnitZ().eval());
 }
 
 TEST(TrackSettings, SaysWhatIsWrong) {

@@ -111,6 +111,49 @@ TEST(SceneFile, OverridesWinOverTheFile) {
     EXPECT_EQ(scene.scan.pattern, core::ScanPattern::Single);
 }
 
+TEST(SceneFile, BinsInPicosecondsLeaveTheRestToTheLight) {
+    const double width_m = 10e-12 * core::kSpeedOfLight;
+    for (const std::string& axis : {R"({"opl_start_m": 1.0, "bin_width_m": 0.1, "num_bins": 9})",
+                                    R"("auto")",
+                                    R"({"num_bins": 100})"}) {
+        const auto scene = read_text(R"({"geometry": "a.glb", "time_axis": )" + axis + "}",
+                                     {"time_axis.bin_width_ps=10"});
+        EXPECT_TRUE(scene.time_axis.automatic) << axis;
+        EXPECT_NEAR(scene.time_axis.bin_width_m, width_m, 1e-15);
+        EXPECT_TRUE(scene.time_axis.stated.bin_width);
+        EXPECT_FALSE(scene.time_axis.stated.opl_start || scene.time_axis.stated.num_bins);
+        // What is echoed says the same.
+        renderer::SceneTimeAxis again;
+        read_value(write_value(scene.time_axis), "time_axis", again);
+        EXPECT_NEAR(again.bin_width_m, width_m, 1e-15);
+        EXPECT_TRUE(again.automatic);
+    }
+    // In any order.
+    const auto whole = read_text(
+        R"({"geometry": "a.glb"})",
+        {"time_axis.num_bins=7", "time_axis.opl_start_ps=100", "time_axis.bin_width_ps=10"});
+    EXPECT_FALSE(whole.time_axis.automatic);
+    EXPECT_EQ(whole.time_axis.num_bins, 7);
+    EXPECT_NEAR(whole.time_axis.opl_start_m, 10.0 * width_m, 1e-14);
+    const auto metres =
+        read_text(R"({"geometry": "a.glb", "time_axis": "auto"})", {"time_axis.bin_width_m=0.003"});
+    EXPECT_TRUE(metres.time_axis.automatic && metres.time_axis.stated.bin_width);
+}
+
+TEST(SceneFile, PicosecondsBesideMetresAreRefused) {
+    EXPECT_ERROR_WITH(
+        read_text(R"({"geometry": "a.glb", "time_axis": {"bin_width_m": 0.1, "bin_width_ps": 3}})"),
+        "time_axis.bin_width_ps: found together with bin_width_m");
+    EXPECT_ERROR_WITH(
+        read_text(R"({"geometry": "a.glb", "time_axis": {"opl_start_m": 1, "opl_start_ps": 3}})"),
+        "opl_start_ps");
+    EXPECT_ERROR_WITH(read_text(R"({"geometry": "a.glb"})",
+                                {"time_axis.bin_width_ps=10", "time_axis.bin_width_m=0.1"}),
+                      "--set time_axis.bin_width_ps");
+    EXPECT_ERROR_WITH(read_text(R"({"geometry": "a.glb"})", {"time_axis.bin_width_ps=-1"}),
+                      "time_axis.bin_width");
+}
+
 TEST(SceneFile, WhatIsOutOfRangeIsNamed) {
     const auto expect_error = [](const std::string& rest, const std::string& part) {
         EXPECT_ERROR_WITH(read_text(R"({"geometry": "a.glb", )" + rest + "}"), part);

@@ -51,32 +51,43 @@ TEST(RecordedDetector, CapturesThatStateNoneHaveNone) {
         core::Capture capture = recorded_by(nullptr);
         capture.scene_info = made;
         EXPECT_FALSE(core::recorded_response(capture)) << made;
-        EXPECT_TRUE(core::detector_warnings(capture, {}).empty()) << made;
+        EXPECT_FALSE(core::detector_warning(capture)) << made;
         core::ResponseSettings asked;
         asked.of_capture = true;
         EXPECT_ERROR_WITH(core::resolve_response(asked, capture, "response"), "states no response");
     }
 }
 
-TEST(RecordedDetector, WhatIsIgnoredAndMattersIsNamed) {
+TEST(RecordedDetector, ItsResponseIsUsedWhereItMattersAndNoneIsAskedFor) {
     const core::Capture capture = recorded_by({{"response", kResponse}});
-    const auto ignored = core::detector_warnings(capture, {});
-    ASSERT_EQ(ignored.size(), 1U);
-    EXPECT_NE(ignored[0].find("60 ps (FWHM) with a tail of 20 ps"), std::string::npos);
-    EXPECT_NE(ignored[0].find("response=capture"), std::string::npos);
-    core::ResponseSettings used;
-    used.jitter_fwhm_ps = 55.0;
-    EXPECT_TRUE(core::detector_warnings(capture, used).empty());
+    core::ResponseSettings asked;
+    EXPECT_EQ(core::resolve_response(asked, capture, "response").jitter_fwhm_ps, 60.0);
+    core::read_value(core::Json("none"), "response", asked);
+    EXPECT_EQ(core::write_value(asked), "none");
+    EXPECT_FALSE(core::is_stated(core::resolve_response(asked, capture, "response")));
     // A tenth of a bin does not matter.
-    EXPECT_TRUE(core::detector_warnings(recorded_by({{"response", {{"jitter_fwhm_ps", 6.0}}}}), {})
-                    .empty());
+    const core::Capture narrow = recorded_by({{"response", {{"jitter_fwhm_ps", 6.0}}}});
+    EXPECT_FALSE(core::is_stated(core::resolve_response({}, narrow, "response")));
+}
+
+TEST(RecordedDetector, TheScenesDetectorIsTakenWhereNoneIsAskedFor) {
+    core::Capture capture = recorded_by(nullptr);
+    EXPECT_FALSE(core::is_stated(core::resolve_scene_response({}, capture)));
+    capture.scene_info["settings"]["detector"]["jitter_fwhm_ps"] = 60.0;
+    EXPECT_EQ(core::resolve_scene_response({}, capture).jitter_fwhm_ps, 60.0);
+    core::ResponseSettings asked;
+    asked.tail_ps = 5.0;
+    EXPECT_EQ(core::resolve_scene_response(asked, capture).jitter_fwhm_ps, 0.0);
+    asked = {};
+    asked.is_none = true;
+    EXPECT_FALSE(core::is_stated(core::resolve_scene_response(asked, capture)));
 }
 
 TEST(RecordedDetector, PileUpIsNamedWhereItMatters) {
-    const auto many = core::detector_warnings(recorded_by({{"pulses", 1000}}), {});
-    ASSERT_EQ(many.size(), 1U);
-    EXPECT_NE(many[0].find("0.1 per pulse"), std::string::npos) << many[0];
-    EXPECT_TRUE(core::detector_warnings(recorded_by({{"pulses", 100000}}), {}).empty());
+    const auto text = core::detector_warning(recorded_by({{"pulses", 1000}}));
+    ASSERT_TRUE(text);
+    EXPECT_NE(text->find("0.1 per pulse"), std::string::npos) << *text;
+    EXPECT_FALSE(core::detector_warning(recorded_by({{"pulses", 100000}})));
 }
 
 }  // namespace
