@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruct.h"
 
+#include "nlos/preparation/capture_faults.h"
 #include "nlos/preparation/memory_limit.h"
+#include "nlos/preparation/place_resolution.h"
 #include "nlos/preparation/second_capture.h"
 #include "nlos/reconstruct_choices.h"
 #include "renderer/core/process.h"
@@ -9,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace nlos {
@@ -118,6 +122,30 @@ std::optional<Volume> measured_again(const core::Capture& capture,
         input_of(plan, own ? *own : prepared.transient(), settings, progress), settings, num_slabs);
 }
 
+/// Leaves out surfaces at places that the scan tells from no other across the volume's width:
+/// confident as they look, they may be anywhere on a shell.
+void leave_out_untold(const PreparedCapture& prepared,
+                      Surface& surface) {
+    const PlaceResolution resolution(prepared.scan, prepared.time_axis.bin_width_m);
+    const WallFrame& wall = prepared.wall;
+    core::DepthMap& depth = surface.depth;
+    const double width_m = std::max({wall.max_m[0] - wall.min_m[0],
+                                     wall.max_m[1] - wall.min_m[1],
+                                     depth.x_m.back() - depth.x_m.front(),
+                                     depth.y_m.back() - depth.y_m.front()});
+    core::parallel_for(depth.x_m.size(), [&](std::size_t ix) {
+        for (std::size_t iy = 0; iy < depth.y_m.size(); ++iy) {
+            const std::size_t i = depth.index(ix, iy);
+            if (!depth.is_foreground(i)) continue;
+            if (resolution.at(depth.point_world(ix, iy)) <= width_m) continue;
+            depth.depth_m[i] = std::numeric_limits<double>::quiet_NaN();
+            depth.normals[i].setZero();
+            surface.probability[i] = 0.0;
+            if (!surface.depth_sigma_m.empty()) surface.depth_sigma_m[i] = depth.depth_m[i];
+        }
+    });
+}
+
 /// A method that knows normals knows them better than a plane through neighbouring columns does.
 void take_normals(const Volume& volume, core::DepthMap& depth) {
     for (std::size_t i = 0; i < volume.normals.size(); ++i) {
@@ -128,13 +156,16 @@ void take_normals(const Volume& volume, core::DepthMap& depth) {
 
 /// Takes depths, what is known of them and points from the volume and, where the noise is known,
 /// that of the scene measured again.
-void take_surface(const core::WallScan& scan, const Volume* again, Reconstruction& result) {
+void take_surface(const ReconstructionPlan& plan, const Volume* again, Reconstruction& result) {
     const MethodErrors& known = traits_of(result.settings).errors;
     VolumeErrors errors = known.noisy;
     if (!again) errors.plateau = known.noiseless_plateau;
     // All but confocal grids leave shells before surfaces.
-    if (!scan.is_confocal() || !scan.sensing.grid) errors.front = 0.0;
+    const PreparedCapture& prepared = plan.prepared;
+    const bool is_confocal_grid = prepared.scan.is_confocal() && prepared.scan.sensing.grid;
+    if (!is_confocal_grid || !prepared.conversion.empty()) errors.front = 0.0;
     Surface surface = find_surface(result.volume, again, errors, result.settings.mask_threshold);
+    leave_out_untold(prepared, surface);
     result.depth = std::move(surface.depth);
     result.surface_probability = std::move(surface.probability);
     result.depth_sigma_m = std::move(surface.depth_sigma_m);
@@ -153,10 +184,16 @@ Reconstruction reconstruct(const core::Capture& capture,
     capture.scan.wall("capture");  // or throws
     Reconstruction result;
     result.settings = settings;
-    const ReconstructionPlan plan = choose(capture, result);
-    const std::size_t num_slabs = claim_memory(capture, plan, progress, result);
+    const CaptureFaults faults = find_faults(capture);
+    const core::Capture mended = faults.empty() ? core::Capture{} : leave_out(faults, capture);
+    const core::Capture& used = faults.empty() ? capture : mended;
+    const ReconstructionPlan plan = choose(used, result);
+    if (auto text = describe(faults)) {
+        result.warnings.insert(result.warnings.begin(), std::move(*text));
+    }
+    const std::size_t num_slabs = claim_memory(used, plan, progress, result);
 
-    const core::Progress first_run = progress.part(0.0, knows_its_noise(capture) ? 0.5 : 1.0);
+    const core::Progress first_run = progress.part(0.0, knows_its_noise(used) ? 0.5 : 1.0);
     const std::optional<core::Transient> own = prepare(plan, plan.prepared.transient());
     const MethodInput input =
         input_of(plan, own ? *own : plan.prepared.transient(), result.settings, first_run);
@@ -169,8 +206,8 @@ Reconstruction reconstruct(const core::Capture& capture,
     core::Progress second_run = progress.part(0.5, 1.0);
     second_run.announce = {};
     const std::optional<Volume> again =
-        measured_again(capture, plan, result.settings, num_slabs, second_run);
-    take_surface(capture.scan.wall(), again ? &*again : nullptr, result);
+        measured_again(used, plan, result.settings, num_slabs, second_run);
+    take_surface(plan, again ? &*again : nullptr, result);
     result.seconds = watch.seconds();
     result.peak_bytes = core::peak_rss_bytes();
     return result;

@@ -101,14 +101,62 @@ void choose_and_enter_method(const core::Capture& capture,
     result.reason = choice.reason;
 }
 
-/// Fills in merge_bins, ambient and, where a method has it, snr, and says what becomes of the
-/// histograms.
+/// Takes background light off, and what is behind the signal unless depths there are asked for.
+/// Counts have a background unless told otherwise, radiance where it stands on a constant level.
+void leave_out_background(const PreparedCapture& prepared,
+                          ReconstructSettings& settings,
+                          PreparationPlan& plan) {
+    if (settings.ambient == Ambient::Keep) return;
+    auto signal = find_signal(prepared.transient(), prepared.observed, prepared.unit);
+    if (settings.ambient == Ambient::Auto) {
+        const bool is_counts = prepared.unit == core::TransientUnit::Counts;
+        const bool has_any = is_counts || settings.noise_floor || (signal && signal->has_background);
+        settings.ambient = has_any ? Ambient::Subtract : Ambient::Keep;
+        if (!has_any) return;
+    }
+    if (signal) {
+        plan.ambient_per_bin = std::move(signal->ambient_per_bin);
+        const int end = (signal->end_bin + plan.merge_bins - 1) / plan.merge_bins;
+        if (!settings.volume.z_range_m) {
+            plan.num_bins = std::clamp(end, std::min(kMinBins, plan.num_bins), plan.num_bins);
+        }
+    }
+    if (settings.noise_floor) {
+        plan.ambient_per_bin.assign(prepared.scan.num_pairs(), *settings.noise_floor);
+    }
+}
+
+/// How many bins before and behind light a response may have taken it from.
+int response_reach(const ReconstructSettings& settings, const core::TimeAxis& axis) {
+    const core::ResponseFilter filter = response_filter(settings, axis);
+    return filter.weights.empty()
+               ? 0
+               : std::abs(filter.first_delay) + static_cast<int>(filter.weights.size());
+}
+
+/// Drops bins at both ends that hold nothing in any histogram: transforms then have the same
+/// period and bins, however many there are. Before a gate nobody looked: there the axis stays.
+void leave_out_dark_ends(const PreparedCapture& prepared,
+                         const ReconstructSettings& settings,
+                         PreparationPlan& plan) {
+    const int reach = response_reach(settings, prepared.time_axis);
+    core::BinRange filled = filled_bins(prepared.transient());
+    if (filled.size() == 0) return;
+    filled = {std::max(0, filled.begin - reach), filled.end + reach};
+    const int merge = plan.merge_bins;
+    const int end = plan.num_bins * merge;
+    const int latest = std::max(0, end - std::min(kMinBins, plan.num_bins) * merge);
+    if (prepared.unobserved_before_m == 0.0) plan.first_bin = std::min(filled.begin, latest);
+    const int whole = (end - plan.first_bin) / merge;
+    const int filled_to = (std::min(filled.end, end) - plan.first_bin + merge - 1) / merge;
+    plan.num_bins = std::clamp(filled_to, std::min(kMinBins, whole), whole);
+}
+
+/// Fills in merge_bins, ambient, z_range_m and, where a method has it, snr, and says what becomes
+/// of the histograms.
 PreparationPlan choose_preparation(const PreparedCapture& prepared, ReconstructSettings& settings) {
     const core::TimeAxis& axis = prepared.time_axis;
     const bool is_counts = prepared.unit == core::TransientUnit::Counts;
-    if (settings.ambient == Ambient::Auto) {
-        settings.ambient = is_counts || settings.noise_floor ? Ambient::Subtract : Ambient::Keep;
-    }
     if (!settings.merge_bins) settings.merge_bins = default_merge_bins(prepared, settings);
     PreparationPlan plan;
     plan.observed = prepared.observed;
@@ -119,18 +167,11 @@ PreparationPlan choose_preparation(const PreparedCapture& prepared, ReconstructS
                           fmt::format("must not exceed the capture's {} bins", axis.num_bins));
     }
     plan.num_bins = axis.num_bins / plan.merge_bins;
-    if (settings.ambient == Ambient::Subtract) {
-        if (auto signal = find_signal(prepared.transient(), prepared.observed)) {
-            plan.ambient_per_bin = std::move(signal->ambient_per_bin);
-            const int end = (signal->end_bin + plan.merge_bins - 1) / plan.merge_bins;
-            if (!settings.volume.z_range_m) {
-                plan.num_bins = std::clamp(end, std::min(kMinBins, plan.num_bins), plan.num_bins);
-            }
-        }
-        if (settings.noise_floor) {
-            plan.ambient_per_bin.assign(prepared.scan.num_pairs(), *settings.noise_floor);
-        }
+    leave_out_background(prepared, settings, plan);
+    if (!settings.volume.z_range_m) {
+        settings.volume.z_range_m = default_z_range(prepared.scan, plan.prepared_axis(axis));
     }
+    leave_out_dark_ends(prepared, settings, plan);
     const MethodTraits& method = traits_of(settings);
     if (!method.explains_response && core::is_stated(settings.response)) {
         plan.deconvolution =
@@ -157,7 +198,9 @@ Measurement take_measurement(const PreparedCapture& prepared,
                              PreparationPlan& plan) {
     const MethodTraits& method = traits_of(settings);
     Measurement measurement;
-    measurement.is_counts = prepared.unit == core::TransientUnit::Counts;
+    const auto is_negative = [](float value) { return value < 0.0F; };
+    measurement.is_counts = prepared.unit == core::TransientUnit::Counts &&
+                            std::ranges::none_of(prepared.transient().values(), is_negative);
     if (method.explains_background) {
         measurement.background_per_bin = std::exchange(plan.ambient_per_bin, {});
         for (double& value : measurement.background_per_bin) value *= plan.merge_bins;
@@ -186,7 +229,6 @@ VolumeAxes choose_axes(const PreparedCapture& prepared,
                        ReconstructSettings& settings) {
     const WallFrame& wall = prepared.wall;
     VolumeSettings& volume = settings.volume;
-    if (!volume.z_range_m) volume.z_range_m = default_z_range(prepared.scan, axis);
     const double depth = (*volume.z_range_m)[1] - (*volume.z_range_m)[0];
     std::array<double, 2> low = wall.min_m;
     std::array<double, 2> high = wall.max_m;
@@ -230,7 +272,7 @@ std::vector<std::string> warnings_of(const core::Capture& capture,
     if (auto text = unobserved_warning(settings, plan.observed, plan.time_axis.num_bins)) {
         warnings.push_back(std::move(*text));
     }
-    if (auto text = few_pairs_warning(plan.prepared.scan)) warnings.push_back(std::move(*text));
+    if (auto text = directions_warning(plan.prepared)) warnings.push_back(std::move(*text));
     return warnings;
 }
 
@@ -250,15 +292,14 @@ ReconstructionPlan choose(const core::Capture& capture, Reconstruction& result) 
     plan.prepared = crop_capture(capture, settings.crop);
     choose_and_enter_method(capture, plan.prepared, result);
     plan.preparation = choose_preparation(plan.prepared, settings);
-    plan.time_axis = plan.prepared.time_axis;
-    plan.time_axis.bin_width_m *= plan.preparation.merge_bins;
-    plan.time_axis.num_bins = plan.preparation.num_bins;
+    plan.time_axis = plan.preparation.prepared_axis(plan.prepared.time_axis);
     plan.observed = prepared_observed(plan.preparation);
     core::simplify(plan.observed, plan.time_axis.num_bins);
     if (is_auto) {
         plan.falloff_trial = FalloffTrial::Always;
         append(survey_capture(plan.prepared, plan.preparation, settings), result.findings);
     }
+    const auto beside = volume_warning(plan.prepared, plan.preparation, *settings.volume.z_range_m);
     plan.measurement = take_measurement(plan.prepared, settings, plan.time_axis, plan.preparation);
     if (traits_of(settings).propagates_wave) {
         choose_wavelength(plan.prepared, plan.time_axis, settings.phasor);
@@ -270,6 +311,7 @@ ReconstructionPlan choose(const core::Capture& capture, Reconstruction& result) 
     }
     plan.axes = choose_axes(plan.prepared, plan.time_axis, settings);
     result.warnings = warnings_of(capture, plan, settings);
+    if (beside) result.warnings.push_back(*beside);
     return plan;
 }
 

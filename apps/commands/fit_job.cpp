@@ -10,6 +10,7 @@
 #include "calib/fit_file.h"
 #include "nlos/formats/volume_file.h"
 #include "nlos/preparation/capture_check.h"
+#include "nlos/preparation/capture_faults.h"
 #include "renderer/core/output_file.h"
 #include "renderer/core/settings_json.h"
 #include "renderer/gltf/gltf.h"
@@ -61,7 +62,13 @@ void use_calibration(const calib::AppliedCalibration& calibration, calib::FitInp
 
 calib::FitResult fit_input(const calib::FitInput& input, const core::Progress& progress) {
     refuse_camera(input);
-    calib::FitResult result = calib::fit_scene(input, progress);
+    const nlos::CaptureFaults faults = nlos::find_faults(input.capture);
+    calib::FitInput mended;
+    if (!faults.empty()) {
+        mended = input;
+        mended.capture = nlos::leave_out(faults, input.capture);
+    }
+    calib::FitResult result = calib::fit_scene(faults.empty() ? input : mended, progress);
     for (std::string& text : nlos::capture_warnings(input.capture)) {
         result.warnings.push_back(std::move(text));
     }

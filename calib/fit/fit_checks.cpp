@@ -29,7 +29,6 @@
 namespace calib {
 namespace {
 
-constexpr double kNotableStep = 5.0;
 constexpr std::size_t kMaxNamed = 8;
 
 void warn_of_cut_light(const core::TimeAxis& axis, double ambient, FitResult& result) {
@@ -164,30 +163,6 @@ void warn_of_patterns(FitResult& result) {
                     correlation));
 }
 
-// Frees what score tests look at, as far as the response allows.
-FreeSettings with_all_freedoms(const FitDriver& driver) {
-    FreeSettings free = driver.settings.free;
-    for (const Parameter* row : parameters()) {
-        if (row->misfit.name == nullptr) continue;
-        if (row->refusal != nullptr && row->refusal(driver.settings.response)) continue;
-        free.parameters.insert(row->name);
-    }
-    return free;
-}
-
-// What is free beside one block of a model with more freedoms, and then that block.
-std::vector<Eigen::Index> columns_beside(const SceneModel& fitted,
-                                         const SceneModel& model,
-                                         const ParameterBlock& block) {
-    std::vector<Eigen::Index> columns;
-    for (const ParameterBlock& other : model.blocks()) {
-        if (fitted.find(*other.row, other.item) == nullptr) continue;
-        for (int c = 0; c < other.columns; ++c) columns.push_back(other.first_column + c);
-    }
-    columns.push_back(block.first_column);
-    return columns;
-}
-
 void warn_of_high_values(const SceneModel& model, FitResult& result) {
     for (const ParameterBlock& block : model.blocks()) {
         if (block.row->owner != Owner::Body || block.row->key == nullptr) continue;
@@ -200,41 +175,6 @@ void warn_of_high_values(const SceneModel& model, FitResult& result) {
             block.row->name,
             value,
             block.row->highest));
-    }
-}
-
-// Score tests: how far one Newton step would move each fixed quantity, were it free beside all
-// that is, in standard deviations of that step.
-void warn_of_misfits(const FitDriver& driver, const SceneState& state, FitResult& result) {
-    FitSettings settings = driver.settings;
-    settings.free = with_all_freedoms(driver);
-    const SceneModel model(driver.input.geometry, settings);
-    const FitDriver::Stage stage = driver.make_stage(model, 0.0);
-    stage.model->refresh(state);
-    stage.objective->evaluate(state, renderer::Gradients::With);
-    Eigen::VectorXd score = Eigen::VectorXd::Zero(model.num_columns());
-    for (std::size_t i = 0; i < stage.objective->num_pairs(); ++i) {
-        const FitObjective::PairRows& rows = stage.objective->pair(i);
-        score -= rows.jacobian.transpose() * rows.residual;
-    }
-    const Eigen::MatrixXd information = stage.objective->fisher(state, {});
-    for (const ParameterBlock& block : model.blocks()) {
-        const MisfitWords& words = block.row->misfit;
-        if (words.name == nullptr || driver.model->find(*block.row) != nullptr) continue;
-        const std::vector<Eigen::Index> columns = columns_beside(*driver.model, model, block);
-        const Eigen::MatrixXd part = information(columns, columns);
-        const Eigen::VectorXd right = score(columns);
-        const Eigen::MatrixXd covariance = generalized_inverse(part);
-        const double step = (covariance * right).tail<1>()[0];
-        const double sigma = std::sqrt(std::max(0.0, covariance.diagonal().tail<1>()[0]));
-        if (!(std::abs(step) > kNotableStep * sigma)) continue;
-        result.warnings.push_back(
-            fmt::format("the data ask for another value of {}: {:+.3g} {} ({:.0f} standard "
-                        "deviations); free or correct it",
-                        words.name,
-                        words.unit * step,
-                        words.unit_name,
-                        std::abs(step) / sigma));
     }
 }
 

@@ -84,6 +84,11 @@ void add_warnings(const FitDriver& driver,
                   const SceneState& state,
                   FitResult& result);
 
+/// Score tests of Poisson data: warns of fixed quantities that one Newton step would move by more
+/// than 5 standard deviations, were they free beside all that is, where the deviance falls along
+/// it.
+void warn_of_misfits(const FitDriver& driver, const SceneState& state, FitResult& result);
+
 /// Sets result.converged to false when the data do not depend on where an object is: its sigma is
 /// then infinite.
 void check_dependence(const SceneModel& model, FitResult& result);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/capture_file.h"
+#include "renderer/core/capture/masked_bins.h"
 #include "renderer/core/error.h"
 
 #include <fmt/core.h>
@@ -121,6 +122,49 @@ void set_unit(core::TransientUnit unit, Capture& capture) {
     capture.notes.push_back(fmt::format("histograms hold {}, as told", core::enum_name(unit)));
 }
 
+void require_numbers(const std::vector<int>& numbers, std::size_t count, const std::string& what) {
+    for (const int number : numbers) {
+        core::require(number >= 0 && static_cast<std::size_t>(number) < count,
+                      "capture.mask_" + what,
+                      fmt::format("{}", number),
+                      fmt::format("a number from 0 to {}", count - 1));
+    }
+}
+
+/// Leaves out bins of all pairs, and all bins of the pairs of some sensing points.
+void mask(const CaptureReadSettings& settings, const std::string& where, Capture& capture) {
+    const auto num_bins = static_cast<std::size_t>(capture.time_axis.num_bins);
+    require_numbers(settings.mask_bins, num_bins, "bins");
+    std::vector<int> bins = settings.mask_bins;
+    std::ranges::sort(bins);
+    core::MaskedBins masked;
+    for (std::size_t pair = 0; pair < capture.scan.num_pairs() && !bins.empty(); ++pair) {
+        masked[pair] = bins;
+    }
+    if (!settings.mask_points.empty()) {
+        if (!capture.scan.has_wall()) {
+            throw core::Error(where,
+                              "is the image of a camera",
+                              "must be a scan of a relay wall for capture.mask_points");
+        }
+        const core::WallScan& scan = capture.scan.wall();
+        require_numbers(settings.mask_points, scan.sensing.size(), "points");
+        std::vector<int> all(num_bins);
+        std::iota(all.begin(), all.end(), 0);
+        for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
+            const int point = static_cast<int>(scan.sensing_index(pair));
+            if (std::ranges::find(settings.mask_points, point) == settings.mask_points.end()) {
+                continue;
+            }
+            masked[pair] = all;
+        }
+    }
+    core::leave_out_bins(masked, capture);
+    capture.notes.push_back(fmt::format("{} wall points and {} bins are left out, as told",
+                                        settings.mask_points.size(),
+                                        settings.mask_bins.size()));
+}
+
 }  // namespace
 
 Capture adjust_capture(Capture capture,
@@ -148,6 +192,9 @@ Capture adjust_capture(Capture capture,
         core::restrict_observed(capture, core::BinRange{begin, end});
         capture.notes.push_back(
             fmt::format("bins {} to {} count as observed, as told", begin, end - 1));
+    }
+    if (!settings.mask_points.empty() || !settings.mask_bins.empty()) {
+        mask(settings, where, capture);
     }
     return capture;
 }

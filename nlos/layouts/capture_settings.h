@@ -7,6 +7,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace nlos {
 
@@ -29,6 +30,8 @@ struct CaptureReadSettings {
     bool flip_y = false;   ///< ... with y running the other way
     bool flip_t = false;   ///< ... with time running backwards
     std::optional<std::array<int, 2>> observed_bins;  ///< [begin, end): only these were observed
+    std::vector<int> mask_points;  ///< sensing points that are left out, by number
+    std::vector<int> mask_bins;    ///< bins that are left out everywhere
 };
 
 template <class Visitor>
@@ -69,6 +72,10 @@ void for_each_field(CaptureReadSettings& s, Visitor&& visit) {
     visit("observed_bins",
           s.observed_bins,
           core::at_least(0, "first bin and end of the bins that were observed; null: all"));
+    visit("mask_points",
+          s.mask_points,
+          "numbers of sensing points to leave out, from 0 (x * Y + y on a grid of X x Y)");
+    visit("mask_bins", s.mask_bins, "numbers of bins to leave out of every histogram, from 0");
     visit("frame", s.frame, core::at_least(0, "the only frame to read of a sequence, from 0"));
     visit("layout",
           s.layout,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/methods/methods.h"
+#include "nlos/preparation/place_resolution.h"
 #include "renderer/core/error.h"
 
 #include <fmt/ranges.h>
@@ -74,6 +75,9 @@ std::string why_statistical(const ReconstructSettings& settings, const PreparedC
 
 MethodChoice choose_automatically(const ReconstructSettings& settings,
                                   const PreparedCapture& prepared) {
+    if (auto why = why_no_directions(prepared)) {
+        return {kPreferredMethods.back()->method, std::move(*why)};
+    }
     MethodChoice choice = preferred_method(prepared, settings.volume);
     if (!choice.reason.empty()) return choice;
     choice.reason = traits_of(choice.method).needs->met;
@@ -147,15 +151,26 @@ std::optional<std::string> unobserved_warning(const ReconstructSettings& setting
         methods_that(&MethodTraits::explains_gaps));
 }
 
-std::optional<std::string> few_pairs_warning(const core::WallScan& scan) {
+std::optional<std::string> directions_warning(const PreparedCapture& prepared) {
     constexpr std::size_t kFewPairs = 24;
-    const std::size_t pairs = scan.num_pairs();
+    constexpr std::string_view kOtherWays =
+        "nlos track follows a target, nlos fit places a known shape";
+    const std::size_t pairs = prepared.scan.num_pairs();
+    if (const auto why = why_no_directions(prepared)) {
+        return fmt::format(
+            "{} {} distances rather than directions: {}, and no surface is stated there; "
+            "capture.wall_size_m corrects the points' extents; {}",
+            pairs == 1 ? "one pair of wall points" : fmt::format("{} pairs of wall points", pairs),
+            pairs == 1 ? "tells" : "tell",
+            *why,
+            kOtherWays);
+    }
     if (pairs > kFewPairs) return std::nullopt;
     return fmt::format(
-        "{} of wall points {} distances rather than directions: expect shells around the points "
-        "instead of surfaces; nlos track follows a target, nlos fit places a known shape",
-        pairs == 1 ? "one pair" : fmt::format("{} pairs", pairs),
-        pairs == 1 ? "tells" : "tell");
+        "{} pairs of wall points tell distances rather than directions: expect shells around the "
+        "points instead of surfaces; {}",
+        pairs,
+        kOtherWays);
 }
 
 }  // namespace nlos

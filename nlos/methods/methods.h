@@ -129,8 +129,8 @@ std::optional<std::string> unobserved_warning(const ReconstructSettings& setting
                                               const core::ObservedBins& observed,
                                               int num_bins);
 
-/// Says of a scan of few pairs of points that it tells distances rather than directions; nothing of
-/// others.
-std::optional<std::string> few_pairs_warning(const core::WallScan& scan);
+/// Says of few pairs of wall points, and of points too near each other or in a row, that they tell
+/// distances rather than directions; nothing of others.
+std::optional<std::string> directions_warning(const PreparedCapture& prepared);
 
 }  // namespace nlos

@@ -2,6 +2,7 @@
 #include "nlos/preparation/capture_check.h"
 
 #include "nlos/preparation/capture_correction.h"
+#include "nlos/preparation/capture_faults.h"
 #include "nlos/preparation/first_light.h"
 #include "nlos/preparation/histogram_preparation.h"
 #include "nlos/preparation/wall_unit.h"
@@ -33,10 +34,9 @@ constexpr std::size_t kMinLitValues = 16;   // fewer may be whole numbers by cha
 
 /// Constant background of each pair; 0 where it cannot be told.
 std::vector<double> ambient_of(const core::Capture& capture) {
-    if (capture.unit == core::TransientUnit::Counts) {
-        if (auto signal = find_signal(capture.transient, capture.observed)) {
-            return std::move(signal->ambient_per_bin);
-        }
+    auto signal = find_signal(capture.transient, capture.observed, capture.unit);
+    if (signal && (capture.unit == core::TransientUnit::Counts || signal->has_background)) {
+        return std::move(signal->ambient_per_bin);
     }
     return std::vector<double>(capture.scan.num_pairs(), 0.0);
 }
@@ -243,23 +243,25 @@ std::optional<std::string> cut_light(const core::Capture& capture) {
         100.0 * share.get<double>());
 }
 
-}  // namespace
+/// Counts from which a background was taken off.
+std::optional<std::string> negative_counts(const core::Capture& capture) {
+    if (capture.unit != core::TransientUnit::Counts) return std::nullopt;
+    const auto values = capture.transient.values();
+    const auto negative = std::ranges::count_if(values, [](float value) { return value < 0.0F; });
+    if (negative == 0) return std::nullopt;
+    return fmt::format(
+        "{:.2g} % of the counts are negative, as if a background had been taken off: their noise "
+        "is not known, and solver and fits take least squares instead of Poisson's likelihood; "
+        "give the counts as recorded, or --set capture.unit=radiance",
+        100.0 * static_cast<double>(negative) / static_cast<double>(values.size()));
+}
 
-std::vector<std::string> capture_warnings(const core::Capture& capture) {
-    const auto& sequence = capture.sequence;
-    const bool other_frames_are_lit =
-        sequence && !std::all_of(sequence->frames.begin(),
-                                 sequence->frames.end(),
-                                 [](const core::Transient& frame) { return frame.is_dark(); });
-    if (core::observed_hull(capture.observed, capture.time_axis.num_bins).size() == 0) {
-        return {"no bin of any pair was observed"};
-    }
-    if (capture.transient.is_dark() && !other_frames_are_lit) {
-        return {"the capture holds no light: all its values are 0"};
-    }
+/// What looks wrong about a capture without faulty bins and points.
+std::vector<std::string> description_warnings(const core::Capture& capture) {
     std::vector<std::string> warnings;
     if (auto warning = cut_light(capture)) warnings.push_back(*warning);
     if (auto warning = wrong_unit(capture)) warnings.push_back(*warning);
+    if (auto warning = negative_counts(capture)) warnings.push_back(*warning);
     if (!capture.scan.has_wall()) return warnings;
     if (auto warning = wall_unit_slip(capture)) {
         warnings.push_back(*warning);
@@ -283,6 +285,27 @@ std::vector<std::string> capture_warnings(const core::Capture& capture) {
     } else if (auto other = bent_onset(capture, bend)) {
         warnings.push_back(*other);
     }
+    return warnings;
+}
+
+}  // namespace
+
+std::vector<std::string> capture_warnings(const core::Capture& capture) {
+    const auto& sequence = capture.sequence;
+    const bool other_frames_are_lit =
+        sequence && !std::all_of(sequence->frames.begin(),
+                                 sequence->frames.end(),
+                                 [](const core::Transient& frame) { return frame.is_dark(); });
+    if (core::observed_hull(capture.observed, capture.time_axis.num_bins).size() == 0) {
+        return {"no bin of any pair was observed"};
+    }
+    if (capture.transient.is_dark() && !other_frames_are_lit) {
+        return {"the capture holds no light: all its values are 0"};
+    }
+    const CaptureFaults faults = find_faults(capture);
+    if (faults.empty()) return description_warnings(capture);
+    std::vector<std::string> warnings = description_warnings(leave_out(faults, capture));
+    warnings.insert(warnings.begin(), *describe(faults));
     return warnings;
 }
 

@@ -5,6 +5,8 @@
 #include "nlos/preparation/prepared_capture.h"
 #include "renderer/core/capture/capture.h"
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,9 @@ namespace nlos {
 /// What looks wrong about a capture, a sentence each, for people:
 ///
 /// - nothing observed, or no light at all;
+/// - hot, dead and negative bins and points, which are left out of all that follows; see
+///   find_faults();
+/// - counts from which a background was taken off;
 /// - a time axis that cuts most light off, where the capture's provenance knows how much there is;
 /// - radiance that is whole numbers throughout, or counts that are not: the unit is wrong;
 /// - a slip in describing the capture that explains it decisively better than its description, with
@@ -46,5 +51,14 @@ std::vector<std::string> capture_warnings(const core::Capture& capture);
 std::vector<std::string> survey_capture(const PreparedCapture& prepared,
                                         const PreparationPlan& plan,
                                         const ReconstructSettings& settings);
+
+/// Says of a volume that none of the capture's light can come from where there is some, and how to
+/// ask for that; nothing of others, and in the dark.
+///
+/// plan        as survey_capture()
+/// z_range_m   of the volume
+std::optional<std::string> volume_warning(const PreparedCapture& prepared,
+                                          const PreparationPlan& plan,
+                                          const std::array<double, 2>& z_range_m);
 
 }  // namespace nlos

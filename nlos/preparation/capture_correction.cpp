@@ -20,6 +20,7 @@ constexpr double kMostBin_m = 1.0;
 
 constexpr double kC = core::kSpeedOfLight;
 constexpr std::array kLengthFactors{2.0, 0.5, kC * 1e-9, 1e9 / kC};
+constexpr std::array kWallUnits{1e-3, 1e-2, 0.0254, 1e3};  // mm, cm, inches and km for metres
 constexpr std::array kFarFactors{
     1e-3, 1e3, 1e-6, 1e6, 1e-9, 1e9, 1e-12, 1e12, kC, 1.0 / kC, kC * 1e-12, 1e12 / kC};
 
@@ -198,7 +199,14 @@ std::vector<CaptureCorrection> possible_corrections(const core::Capture& capture
                                          ? core::OplOrigin::RelayWall
                                          : core::OplOrigin::Device;
     }
-    if (!is_in_proportion(capture, sample, {})) return list;
+    if (!is_in_proportion(capture, sample, {})) {
+        for (const double factor : kWallUnits) {
+            CaptureCorrection correction;
+            correction.wall_factor = factor;
+            if (is_in_proportion(capture, sample, correction)) list.push_back(correction);
+        }
+        return list;
+    }
     if (!is_scale_free(scan)) {
         for (const double factor : {2.0, 0.5}) {
             list.emplace_back().wall_factor = factor;

@@ -42,7 +42,7 @@ bool is_scale_free(const core::WallScan& scan);
 
 /// The single slips that could have been made, but for those of time zero, that this capture could
 /// show: factors of lengths (units, one way and round trip), the wall's size, device legs, exchange
-/// and reversal of axes. Factors of 1000 and those of the speed of light are listed when they bring
+/// and reversal of axes. Units of lengths and of the wall's points are listed when they bring
 /// ranges into a plausible proportion to the wall.
 std::vector<CaptureCorrection> possible_corrections(const core::Capture& capture,
                                                     const HistogramSample& sample);

@@ -16,14 +16,17 @@ constexpr std::size_t kSegments = 32;
 constexpr std::size_t kDarkShare = 4;    // one in so many segments is taken for dark
 constexpr double kSignificance = 5.0;    // standard deviations
 constexpr double kSmallestShare = 0.01;  // of the strongest segment
+constexpr double kConstant = 0.1;        // of a background: by which its segments may differ
 
-/// Light and the number of bins that it was observed in.
+/// Light, its squares and the number of bins that it was observed in.
 struct SeenLight {
     double sum = 0.0;
+    double squares = 0.0;
     double bins = 0.0;
 
     SeenLight& operator+=(const SeenLight& other) {
         sum += other.sum;
+        squares += other.squares;
         bins += other.bins;
         return *this;
     }
@@ -42,30 +45,38 @@ struct Segments {
         const int first = begin + static_cast<int>(segment) * length;
         const core::BinRange seen = core::intersection(observed, {first, first + length});
         const auto from = histogram.begin() + seen.begin;
-        return {std::accumulate(from, from + seen.size(), 0.0), 1.0 * seen.size()};
+        const auto end = from + seen.size();
+        return {std::accumulate(from, end, 0.0),
+                std::inner_product(from, end, from, 0.0),
+                1.0 * seen.size()};
     }
 };
 
-/// The first bin that is not zero in every histogram.
-std::size_t first_filled_bin(const core::Transient& transient) {
-    std::size_t first = transient.num_bins();
-    for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
-        const auto histogram = transient.histogram(pair);
-        const auto end = histogram.begin() + static_cast<std::ptrdiff_t>(first);
-        const auto filled =
-            std::find_if(histogram.begin(), end, [](float value) { return value != 0.0F; });
-        first = static_cast<std::size_t>(filled - histogram.begin());
-    }
-    return first;
+/// Whether a background goes on to the last filled bin and then is none: what is behind was never
+/// recorded. Light fades instead, and what is behind it is dark.
+bool ends_at_once(const core::Transient& transient, const core::BinRange& filled) {
+    constexpr int kEdge = 2;
+    constexpr double kLevel = 0.5;  // of the last segment's
+    constexpr double kCounts = kSignificance * kSignificance;
+    const int segment = std::max(kEdge, filled.size() / static_cast<int>(kSegments));
+    const std::vector<double> light = light_per_bin(transient, nullptr, {});
+    const auto mean_of_last = [&](int count) {
+        return std::accumulate(
+                   light.begin() + filled.end - count, light.begin() + filled.end, 0.0) /
+               count;
+    };
+    return filled.size() > segment && kEdge * mean_of_last(kEdge) > kCounts &&
+           mean_of_last(kEdge) > kLevel * mean_of_last(segment);
 }
 
 Segments make_segments(const core::Transient& transient, const core::ObservedBins& observed) {
-    const core::BinRange hull =
-        core::observed_hull(observed, static_cast<int>(transient.num_bins()));
-    Segments segments;
-    segments.begin = observed ? hull.begin : static_cast<int>(first_filled_bin(transient));
-    segments.length = (hull.end - segments.begin) / static_cast<int>(kSegments);
-    return segments;
+    core::BinRange range = core::observed_hull(observed, static_cast<int>(transient.num_bins()));
+    if (!observed) {
+        const core::BinRange filled = filled_bins(transient);
+        range.begin = filled.begin;
+        if (filled.end < range.end && ends_at_once(transient, filled)) range.end = filled.end;
+    }
+    return {range.begin, range.size() / static_cast<int>(kSegments)};
 }
 
 /// Histograms in segments, a part of the bins observed.
@@ -73,7 +84,8 @@ class SegmentedTransient {
  public:
     SegmentedTransient(const core::Transient& transient,
                        const core::ObservedBins& observed,
-                       const Segments& segments)
+                       const Segments& segments,
+                       core::TransientUnit unit)
         : transient_(transient), observed_(observed), segments_(segments) {
         for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
             for (std::size_t i = 0; i < kSegments; ++i) total_[i] += light(pair, i);
@@ -82,6 +94,7 @@ class SegmentedTransient {
         std::ranges::stable_sort(darkest_first_, {}, [&](std::size_t i) {
             return is_seen(i) ? sum(i) : std::numeric_limits<double>::infinity();
         });
+        if (unit != core::TransientUnit::Counts) variance_per_light_ = dark_variance_per_light();
     }
 
     std::size_t num_seen() const {
@@ -92,7 +105,9 @@ class SegmentedTransient {
 
     /// Light of all pairs, had all of them observed the segment, and its standard deviation.
     double sum(std::size_t i) const { return total_[i].sum * full_sight(i); }
-    double deviation(std::size_t i) const { return std::sqrt(total_[i].sum) * full_sight(i); }
+    double deviation(std::size_t i) const {
+        return std::sqrt(variance_per_light_ * std::max(0.0, total_[i].sum)) * full_sight(i);
+    }
     double strongest() const { return sum(darkest_first_[num_seen() - 1]); }
 
     /// Light of one pair in the darkest segments.
@@ -103,7 +118,32 @@ class SegmentedTransient {
     }
     std::size_t num_dark() const { return std::max<std::size_t>(1, num_seen() / kDarkShare); }
 
+    /// Whether the darkest segments hold as much as each other, and not nothing.
+    bool is_dark_constant() const {
+        const std::size_t brightest = darkest_first_[num_dark() - 1];
+        const double least = sum(darkest_first_[0]);
+        return least > 0.0 && sum(brightest) - least < kConstant * sum(brightest) +
+                                                           kSignificance * deviation(brightest);
+    }
+
  private:
+    /// Variance of values in the darkest segments over their mean: 1 of counts, less of means.
+    double dark_variance_per_light() const {
+        double squares = 0.0;
+        double degrees = 0.0;
+        double sum = 0.0;
+        double bins = 0.0;
+        for (std::size_t pair = 0; pair < transient_.num_pairs(); ++pair) {
+            const SeenLight dark = dark_light(pair);
+            if (dark.bins < 2.0) continue;
+            squares += dark.squares - dark.sum * dark.sum / dark.bins;
+            degrees += dark.bins - 1.0;
+            sum += dark.sum;
+            bins += dark.bins;
+        }
+        return sum > 0.0 ? std::max(0.0, squares / degrees) / (sum / bins) : 0.0;
+    }
+
     SeenLight light(std::size_t pair, std::size_t segment) const {
         const int num_bins = static_cast<int>(transient_.num_bins());
         return segments_.light(
@@ -118,15 +158,33 @@ class SegmentedTransient {
     const Segments& segments_;
     SegmentLight total_{};
     std::array<std::size_t, kSegments> darkest_first_{};
+    double variance_per_light_ = 1.0;
 };
 
 }  // namespace
 
+core::BinRange filled_bins(const core::Transient& transient) {
+    const auto is_filled = [](float value) { return value != 0.0F; };
+    std::size_t begin = transient.num_bins();
+    std::size_t end = 0;
+    for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
+        const auto histogram = transient.histogram(pair);
+        const auto before = histogram.first(begin);
+        begin = static_cast<std::size_t>(std::ranges::find_if(before, is_filled) - before.begin());
+        const auto behind = histogram.subspan(end);
+        end += static_cast<std::size_t>(std::find_if(behind.rbegin(), behind.rend(), is_filled).base() -
+                                        behind.begin());
+    }
+    return begin < end ? core::BinRange{static_cast<int>(begin), static_cast<int>(end)}
+                       : core::BinRange{};
+}
+
 std::optional<SignalExtent> find_signal(const core::Transient& transient,
-                                        const core::ObservedBins& observed) {
+                                        const core::ObservedBins& observed,
+                                        core::TransientUnit unit) {
     const Segments segments = make_segments(transient, observed);
     if (segments.length < 2) return std::nullopt;
-    const SegmentedTransient parts(transient, observed, segments);
+    const SegmentedTransient parts(transient, observed, segments, unit);
 
     std::vector<SeenLight> dark;
     SeenLight all_dark;
@@ -134,6 +192,7 @@ std::optional<SignalExtent> find_signal(const core::Transient& transient,
         all_dark += dark.emplace_back(parts.dark_light(pair));
     }
     SignalExtent extent;
+    extent.has_background = parts.is_dark_constant();
     double ambient_sum = 0.0;
     for (const SeenLight& own : dark) {
         const SeenLight& light = own.bins < segments.length ? all_dark : own;
@@ -208,7 +267,7 @@ core::Transient prepare_histograms(const core::Transient& transient, const Prepa
         }
         const core::BinRange range = plan.prepared_range(pair);
         for (int bin = range.begin; bin < range.end; ++bin) {
-            const auto from = signal.begin() + bin * merge;
+            const auto from = signal.begin() + plan.first_bin + bin * merge;
             output[static_cast<std::size_t>(bin)] =
                 static_cast<float>(std::accumulate(from, from + merge, 0.0));
         }

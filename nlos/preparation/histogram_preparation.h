@@ -7,6 +7,7 @@
 #include "renderer/core/capture/time_axis.h"
 #include "renderer/core/capture/transient.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
@@ -18,14 +19,20 @@ namespace nlos {
 struct SignalExtent {
     std::vector<double> ambient_per_bin;  ///< per pair
     int end_bin = 0;                      ///< bins from here on hold nothing but ambient light
+    bool has_background = false;          ///< it is there, and the same in all of its segments
 };
 
-/// Finds constant background light and the end of the signal in photon counts.
+/// The bins from the first to the last that is not 0 in every histogram; none in the dark.
+core::BinRange filled_bins(const core::Transient& transient);
+
+/// Finds constant background light and the end of the signal.
 ///
-/// Of 32 segments of the axis (zeroed bins at its start left out), the quarter that is darkest over
-/// all pairs gives each pair's ambient level. The signal ends with the last segment whose sum over
-/// all pairs exceeds the ambient light by 5 standard deviations and by 1 % of the strongest
-/// segment: noise behind it would be raised by range^4 and outshine the scene.
+/// Of 32 segments of the axis, the quarter that is darkest over all pairs gives each pair's ambient
+/// level. Left out are zeroed bins at the axis's start, and those at its end where a background
+/// ends at once: nobody looked there. The signal ends with the last segment whose sum over all
+/// pairs exceeds the ambient light by 5 standard deviations and by 1 % of the strongest segment:
+/// noise behind it would be raised by range^4 and outshine the scene. The noise of counts is
+/// Poisson's; that of other values is told from the dark segments.
 ///
 /// Bins that were not observed count nowhere: the segments share the bins that were, sums are
 /// scaled to full sight, and a pair that saw less than one dark segment takes the others' level.
@@ -33,7 +40,8 @@ struct SignalExtent {
 /// returns   nothing when the axis is too short to tell (fewer than 64 filled bins)
 /// throws    nothing
 std::optional<SignalExtent> find_signal(const core::Transient& transient,
-                                        const core::ObservedBins& observed = std::nullopt);
+                                        const core::ObservedBins& observed = std::nullopt,
+                                        core::TransientUnit unit = core::TransientUnit::Counts);
 
 /// Light of all pairs in each bin, of those that observed it.
 ///
@@ -78,16 +86,25 @@ struct PreparationPlan {
     /// Of histograms of the capture's length, null: none.
     std::shared_ptr<const ResponseDeconvolution> deconvolution = nullptr;
     core::ObservedBins observed = std::nullopt;  ///< before merging
+    int first_bin = 0;                           ///< before merging; earlier bins are dropped
 
     /// The bins of a prepared histogram that were observed, each of them as a whole.
     core::BinRange prepared_range(std::size_t pair) const {
         if (!observed) return {0, num_bins};
-        return core::intersection(core::merged((*observed)[pair], merge_bins), {0, num_bins});
+        const core::BinRange& seen = (*observed)[pair];
+        const core::BinRange left{std::max(0, seen.begin - first_bin),
+                                  std::max(0, seen.end - first_bin)};
+        return core::intersection(core::merged(left, merge_bins), {0, num_bins});
+    }
+
+    /// The axis of prepared histograms.
+    core::TimeAxis prepared_axis(const core::TimeAxis& axis) const {
+        return {axis.bin_begin_m(first_bin), merge_bins * axis.bin_width_m, num_bins};
     }
 };
 
 /// Takes off ambient light, then the set-up's response, adds up neighbouring bins and drops those
-/// behind the plan's end. Bins zeroed at the start of a histogram stay 0, as do those not observed;
+/// before the plan's start and behind its end. Bins zeroed at the start of a histogram stay 0, as do those not observed;
 /// what was observed of a bin that was not as a whole is dropped.
 core::Transient prepare_histograms(const core::Transient& transient, const PreparationPlan& plan);
 

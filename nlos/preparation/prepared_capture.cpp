@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/preparation/prepared_capture.h"
 
+#include "nlos/preparation/grid_order.h"
 #include "nlos/preparation/memory_limit.h"
 #include "renderer/core/error.h"
 
@@ -109,10 +110,12 @@ void take_histograms(const core::Capture& capture,
     }
 }
 
+/// numbers   of the pairs of the prepared scan in the capture
 void crop_measurement(const core::Capture& capture,
                       const CropSettings& crop,
+                      const std::vector<std::size_t>& numbers,
                       PreparedCapture& prepared) {
-    const core::WallScan& scan = capture.scan.wall();
+    const core::WallScan scan = prepared.scan;
     const core::Transform wall_from_world = prepared.wall.world_from_wall.inverse(Eigen::Isometry);
     const Selection sensing = select_points(scan.sensing, wall_from_world, crop);
     const bool is_exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
@@ -134,7 +137,7 @@ void crop_measurement(const core::Capture& capture,
     for (std::size_t pair = 0; pair < prepared.scan.num_pairs(); ++pair) {
         const std::size_t s = sensing.numbers[pair % sensing.numbers.size()];
         const std::size_t l = is_exhaustive ? lit.numbers[pair / sensing.numbers.size()] : 0;
-        pairs.push_back(l * scan.sensing.size() + s);
+        pairs.push_back(numbers[l * scan.sensing.size() + s]);
     }
     take_histograms(capture, pairs, bins, prepared);
     prepared.wall = derive_wall_frame(prepared.scan);
@@ -149,12 +152,14 @@ PreparedCapture crop_capture(const core::Capture& capture, const CropSettings& c
     prepared.unit = capture.unit;
     prepared.capture_transient = &capture.transient;
     prepared.observed = capture.observed;
-    prepared.wall = derive_wall_frame(capture.scan.wall());
+    const std::vector<std::size_t> numbers = sort_into_grids(prepared.scan);
+    prepared.wall = derive_wall_frame(prepared.scan);
     const bool has_blind_ends =
         core::observed_hull(capture.observed, capture.time_axis.num_bins).size() <
         capture.time_axis.num_bins;
-    if (crop.x_range_m || crop.y_range_m || crop.opl_range_m || has_blind_ends) {
-        crop_measurement(capture, crop, prepared);
+    if (crop.x_range_m || crop.y_range_m || crop.opl_range_m || has_blind_ends ||
+        !std::ranges::is_sorted(numbers)) {
+        crop_measurement(capture, crop, numbers, prepared);
     }
     core::WallScan& scan = prepared.scan;
     if (scan.pattern == core::ScanPattern::Exhaustive && scan.sensing.size() == 1) {

@@ -33,6 +33,24 @@ constexpr FactorStory kFactorStories[] = {
     {core::kSpeedOfLight * 1e-12, "as if ps had been taken for metres"},
     {1e12 / core::kSpeedOfLight, "as if metres had been taken for ps"}};
 
+/// The same of the wall's extents.
+constexpr FactorStory kWallStories[] = {
+    {2.0, "as if half its width had been taken for the width"},
+    {0.5, "as if the width had been taken for half of it"},
+    {1e-3, "as if mm had been taken for metres"},
+    {1e-2, "as if cm had been taken for metres"},
+    {0.0254, "as if inches had been taken for metres"},
+    {1e3, "as if km had been taken for metres"}};
+
+/// What happened, after a comma; nothing where no story has the factor.
+template <std::size_t kCount>
+std::string story_of(const FactorStory (&stories)[kCount], double factor) {
+    for (const FactorStory& story : stories) {
+        if (story.factor == factor) return fmt::format(", {}", story.text);
+    }
+    return "";
+}
+
 std::string setting_of_wall(const core::Capture& capture, double factor) {
     const core::ScanExtent extent = core::scan_extent(capture.scan.wall());
     return fmt::format("capture.wall_size_m=[{:.6g},{:.6g}]",
@@ -46,9 +64,7 @@ std::string text_of_lengths(const core::Capture& capture, const CaptureCorrectio
     std::string text = fmt::format("lengths look {:.4g} times too {}",
                                    std::max(factor, 1.0 / factor),
                                    factor < 1.0 ? "long" : "short");
-    for (const FactorStory& story : kFactorStories) {
-        if (story.factor == factor) text += fmt::format(", {}", story.text);
-    }
+    text += story_of(kFactorStories, factor);
     text += fmt::format(": --set capture.bin_width_m={:.6g}", factor * axis.bin_width_m);
     const double start_moves_m = (factor - 1.0) * axis.opl_start_m;
     if (!correction.keeps_start && std::abs(start_moves_m) > factor * axis.bin_width_m) {
@@ -58,17 +74,15 @@ std::string text_of_lengths(const core::Capture& capture, const CaptureCorrectio
     return text + fmt::format("; or the wall looks {:.4g} times too {}{}: --set {}",
                               std::max(factor, 1.0 / factor),
                               factor < 1.0 ? "small" : "large",
-                              factor == 0.5 ? ", as if half its width had been taken for the width"
-                              : factor == 2.0 ? ", as if the width had been taken for half of it"
-                                              : "",
+                              story_of(kWallStories, 1.0 / factor),
                               setting_of_wall(capture, 1.0 / factor));
 }
 
 std::string text_of_wall(const core::Capture& capture, double factor) {
-    return fmt::format("the wall looks {:.4g} times too {}: --set {}",
+    return fmt::format("the wall looks {:.4g} times too {}{}: --set {}",
                        std::max(factor, 1.0 / factor),
-                       factor > 1.0 ? "small, as if half its width had been taken for the width"
-                                    : "large, as if the width had been taken for half of it",
+                       factor > 1.0 ? "small" : "large",
+                       story_of(kWallStories, factor),
                        setting_of_wall(capture, factor));
 }
 

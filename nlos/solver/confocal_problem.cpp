@@ -263,11 +263,6 @@ double light_unit(const ConfocalProblem& data) {
     return sum > 0.0 && mean > 0.0 ? std::sqrt(sum / mean) : 1.0;
 }
 
-bool holds_counts(const MethodInput& input) {
-    return input.measurement.is_counts &&
-           std::ranges::all_of(input.transient.values(), [](float value) { return value >= 0.0F; });
-}
-
 }  // namespace
 
 double num_observed_bins(const ConfocalProblem& data) {
@@ -288,7 +283,7 @@ ConfocalProblem make_confocal_problem(const MethodInput& input,
     const double power = falloff_power(settings.falloff);
     Likelihood likelihood = settings.solver.likelihood;
     if (likelihood == Likelihood::Auto) {
-        likelihood = holds_counts(input) ? Likelihood::Poisson : Likelihood::Gaussian;
+        likelihood = input.measurement.is_counts ? Likelihood::Poisson : Likelihood::Gaussian;
     }
     const TotalLight total = total_light(input, histograms);
     const bool is_poisson = likelihood == Likelihood::Poisson;

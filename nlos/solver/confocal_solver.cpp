@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/solver/confocal_solver.h"
 
+#include "nlos/solver/albedo_density.h"
 #include "nlos/solver/confocal_admm.h"
 
 #include <fmt/format.h>
@@ -64,7 +65,9 @@ Volume solve_confocal(const MethodInput& input, const ReconstructSettings& setti
     const ConservativeResampling to_depth = squared_range_to_depth(input, cone, BinSpread::Linear);
     const std::size_t num_z = input.axes.z_m.size();
     const ConeKernel kernel(cone, *input.wall.grid);
-    const double unit = data.unit / std::sqrt(kernel.squared_norm());
+    const double voxel_depth_m = (input.z_range_m[1] - input.z_range_m[0]) / static_cast<double>(num_z);
+    const double unit = data.unit / std::sqrt(kernel.squared_norm()) *
+                        albedo_density_of_light(input) * voxel_depth_m;  // to_depth divides by it
     std::vector<float> units;  // per bin of v; cosines leave z^4 to the albedo
     for (std::size_t v = 0; v < cone.num_v(); ++v) {
         const double squared_depth = 0.5 * (cone.v_edges[v] + cone.v_edges[v + 1]);

@@ -25,7 +25,7 @@ namespace nlos {
 /// light has fallen to 1/e^2 a laser's spot is 1.7 times as wide. Off by a third, it spoils
 /// outlines.
 ///
-/// returns    albedo per metre of depth, up to a common factor; not negative
+/// returns    albedo per metre of depth, see albedo_density_of_light(); not negative
 /// throws     core::Failure when asked to stop
 /// source     [OToole2018], supplement; [Boyd2011]; [Candes2008]; Poisson likelihood
 /// [Figueiredo2010]

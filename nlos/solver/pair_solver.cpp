@@ -3,6 +3,7 @@
 
 #include "nlos/preparation/histogram_preparation.h"
 #include "nlos/solver/active_voxels.h"
+#include "nlos/solver/albedo_density.h"
 #include "nlos/solver/pair_operator.h"
 #include "renderer/core/statistics.h"
 
@@ -81,8 +82,9 @@ class PairSolver {
                 fmt::format("solver: {} passes, {} voxels left", pass, voxels_.size()));
         }
         Volume volume{input_.axes, std::vector<float>(input_.axes.num_voxels(), 0.0F), {}};
+        const auto unit = static_cast<float>(albedo_density_of_light(input_)) / scale_;
         for (std::size_t i = 0; i < voxels_.size(); ++i) {
-            volume.values[voxels_.indices[i]] = voxels_.albedo[i] / scale_;
+            volume.values[voxels_.indices[i]] = unit * voxels_.albedo[i];
         }
         return volume;
     }

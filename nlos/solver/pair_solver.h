@@ -18,7 +18,7 @@ namespace nlos {
 /// Radiance is taken for counts whose brightest bin holds 400, as if the model erred there by 5 %;
 /// what is negative in it counts as 0.
 ///
-/// returns   albedo, not negative
+/// returns   albedo per metre of depth, see albedo_density_of_light(); not negative
 /// throws    core::Failure when asked to stop
 /// source    [Sawatzky2008], [Hudson1994]
 Volume solve_pairs(const MethodInput& input, const ReconstructSettings& settings);

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace nlos {
 namespace {
@@ -35,6 +37,50 @@ TEST(HistogramPreparation, KeepsTheWholeAxisWithoutASignal) {
     ASSERT_TRUE(signal);
     EXPECT_EQ(signal->end_bin, 320);
     EXPECT_FALSE(find_signal(core::Transient(1, 320)));
+}
+
+// Bins that a file was filled up with hold less than the background.
+TEST(HistogramPreparation, ZeroesBehindABackgroundAreNotDark) {
+    const core::Transient recorded = example_histograms();
+    core::Transient longer(2, 500);
+    for (std::size_t pair = 0; pair < 2; ++pair) {
+        std::ranges::copy(recorded.histogram(pair), longer.histogram(pair).begin());
+    }
+    const auto signal = find_signal(longer);
+    ASSERT_TRUE(signal);
+    EXPECT_DOUBLE_EQ(signal->ambient_per_bin[0], 2.0);
+    EXPECT_DOUBLE_EQ(signal->ambient_per_bin[1], 5.0);
+    EXPECT_EQ(signal->end_bin, 80);
+}
+
+// Means of several frames have less noise than counts, and no unit that tells.
+TEST(HistogramPreparation, FindsTheBackgroundOfMeans) {
+    std::mt19937 generator(3);
+    core::Transient transient(100, 320);
+    for (std::size_t pair = 0; pair < 100; ++pair) {
+        for (std::size_t bin = 0; bin < 320; ++bin) {
+            std::poisson_distribution<int> counts(bin >= 40 && bin < 80 ? 80.0 : 30.0);
+            transient.histogram(pair)[bin] = 1e-3F * static_cast<float>(counts(generator)) / 4.0F;
+        }
+    }
+    const auto signal = find_signal(transient, std::nullopt, core::TransientUnit::Radiance);
+    ASSERT_TRUE(signal);
+    EXPECT_TRUE(signal->has_background);
+    EXPECT_NEAR(signal->ambient_per_bin[7], 0.0075, 0.0005);
+    EXPECT_EQ(signal->end_bin, 80);
+}
+
+// A tail of light that falls is none.
+TEST(HistogramPreparation, LightThatFallsIsNoBackground) {
+    core::Transient transient(10, 320);
+    for (std::size_t pair = 0; pair < 10; ++pair) {
+        for (std::size_t bin = 0; bin < 320; ++bin) {
+            transient.histogram(pair)[bin] = std::exp(-0.01F * static_cast<float>(bin));
+        }
+    }
+    const auto signal = find_signal(transient, std::nullopt, core::TransientUnit::Radiance);
+    ASSERT_TRUE(signal);
+    EXPECT_FALSE(signal->has_background);
 }
 
 TEST(HistogramPreparation, TakesOffAmbientLightAndAddsUpBins) {
