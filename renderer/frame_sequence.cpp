@@ -4,6 +4,7 @@
 #include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/core/random.h"
 #include "renderer/estimators.h"
+#include "renderer/recentred.h"
 #include "renderer/render.h"
 
 #include <fmt/core.h>
@@ -48,7 +49,7 @@ FrameRenderer make_frame_renderer(const core::Scan& scan, const RenderSettings& 
                     method.name),
         "null, or the method " + estimators_that(&EstimatorTraits::has_independent_frames));
     const auto make = method_of(settings.method).make_frame_renderer;
-    if (make != nullptr) return make(scan, settings);
+    if (make != nullptr) return make_recentred_frame_renderer(scan, settings, make);
     return [](const Frame& frame, const core::Scan& frame_scan, const core::Progress& progress) {
         const core::Scan posed = pose_sensor(frame_scan, frame.index);
         return render(*frame.scene, posed, frame.axes, frame.settings, progress);

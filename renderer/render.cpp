@@ -2,9 +2,19 @@
 #include "renderer/render.h"
 
 #include "renderer/estimators.h"
+#include "renderer/recentred.h"
 #include "renderer/sensor_render.h"
 
 namespace renderer {
+namespace {
+
+RenderResult render_here(const RenderTask& task) {
+    const auto* zones = task.scan.as<core::SensorScan>();
+    return zones != nullptr ? render_zones(task, *zones)
+                            : method_of(task.settings.method).run(task);
+}
+
+}  // namespace
 
 RenderResult render(const Scene& scene,
                     const core::Scan& scan,
@@ -13,8 +23,13 @@ RenderResult render(const Scene& scene,
                     const core::Progress& progress) {
     const RenderTask task{scene, scan, axes, settings, progress};
     require_possible(task);
-    const auto* zones = scan.as<core::SensorScan>();
-    return zones != nullptr ? render_zones(task, *zones) : method_of(settings.method).run(task);
+    const auto way = way_to_origin(scene);
+    if (!way) return render_here(task);
+    const core::Scan moved_scan = core::moved(scan, *way);
+    RenderResult result =
+        render_here({scene.moved(*way, moved_scan), moved_scan, axes, settings, progress});
+    result.capture.scan = scan;
+    return result;
 }
 
 }  // namespace renderer

@@ -3,6 +3,7 @@
 #include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/core/settings_json.h"
 #include "renderer/light_range.h"
+#include "renderer/scene/coincident_faces.h"
 #include "renderer/scene/load_geometry.h"
 
 #include <fmt/core.h>
@@ -10,13 +11,15 @@
 namespace apps {
 namespace {
 
-std::string describe_material(const renderer::Material& material) {
+std::string describe_material(const renderer::Object& object) {
+    const renderer::Material& material = object.material;
     std::string text =
         fmt::format("{}, albedo {:.3f}", core::enum_name(material.model), material.albedo);
     if (renderer::traits_of(material.model).has_lobe) {
         text += fmt::format(", roughness {:.2f}", material.roughness);
     }
     if (material.albedo_texture) text += " (textured)";
+    if (!object.vertex_albedo.empty()) text += " (times the colours of vertices)";
     return text;
 }
 
@@ -33,7 +36,7 @@ void print_object(std::string& out, const renderer::Object& object) {
              object.name.empty() ? "(unnamed)" : object.name,
              object.mesh.triangles.size(),
              core::enum_name(object.role),
-             describe_material(object.material),
+             describe_material(object),
              box.min().x(),
              box.max().x(),
              box.min().y(),
@@ -70,6 +73,11 @@ void print_size(std::string& out, const renderer::SceneGeometry& geometry) {
              size.x(),
              size.y(),
              size.z());
+}
+
+// What of the geometry lies on other parts of it.
+void print_coincident(std::string& out, const std::vector<renderer::CoincidentFaces>& faces) {
+    if (!faces.empty()) add_line(out, "{}", renderer::describe(faces));
 }
 
 void print_warnings(std::string& out, const std::vector<std::string>& warnings) {
@@ -150,7 +158,7 @@ void print_light(std::string& out,
 }  // namespace
 
 void describe_geometry(std::string& out, const std::string& path) {
-    const renderer::SceneGeometry geometry = renderer::load_geometry(path);
+    renderer::SceneGeometry geometry = renderer::load_geometry(path);
     add_line(out, "format: {}", renderer::geometry_format(path));
     renderer::SceneDescription alone;
     alone.geometry = path;
@@ -158,6 +166,10 @@ void describe_geometry(std::string& out, const std::string& path) {
     print_size(out, geometry);
     for (const renderer::Object& object : geometry.objects) print_object(out, object);
     for (const renderer::Camera& camera : geometry.cameras) print_camera(out, camera);
+    const renderer::FacePrecedence precedence(geometry.objects);
+    const double tolerance_m = renderer::coincidence_m(geometry.objects, {});
+    print_coincident(out,
+                     renderer::leave_out_covered_faces(geometry.objects, precedence, tolerance_m));
     print_warnings(out, geometry.warnings);
 }
 
@@ -168,6 +180,7 @@ void describe_scene(std::string& out, const std::string& path) {
     add_line(out, "format: scene description\ngeometry: {}", renderer::geometry_name(description));
     for (const std::string& line : renderer::describe_frame(description)) add_line(out, "{}", line);
     for (const renderer::Object& object : scene.objects()) print_object(out, object);
+    print_coincident(out, scene.coincident_faces());
     print_warnings(out, scene.warnings());
     print_measurement(out, description, scan);
     print_light(out, scene, scan, description);

@@ -220,6 +220,8 @@ renderer::RenderResult render_input(RenderInput input, const core::Progress& cal
     const core::Progress progress = recording(caller, warnings);
     progress.stage(1, 3, "where the light lies", 0.0, 0.0);
     for (const std::string& text : input.scene->warnings()) progress.warn(text);
+    const std::string coincident = renderer::describe(input.scene->coincident_faces());
+    if (!coincident.empty() && progress.announce) progress.announce(coincident);
     const auto light =
         renderer::find_light_range(*input.scene, input.scan, input.description.render);
     if (input.description.time_axis.automatic) choose_axis(light, input);
@@ -234,6 +236,7 @@ renderer::RenderResult render_input(RenderInput input, const core::Progress& cal
     }
     report_darkness(result, progress);
     core::Json info = provenance(input, result);
+    if (!coincident.empty()) info["coincident_faces"] = coincident;
     if (light) info["light"] = write_light(*light, rendered.time_axis);
     if (!warnings.empty()) info["warnings"] = warnings;
     result.capture.scene_info = std::move(info);

@@ -26,10 +26,11 @@ struct JoinedObjects {
 JoinedObjects join(const renderer::SceneGeometry& geometry) {
     JoinedObjects joined;
     for (const renderer::Object& object : geometry.objects) {
-        if (!renderer::traits_of(object.material.model).is_constant ||
-            object.material.albedo_texture || object.role == renderer::Role::RelayWall) {
+        if (!renderer::traits_of(object.material.model).is_constant || !object.has_one_albedo() ||
+            object.role == renderer::Role::RelayWall) {
             throw core::Error("scene: object " + object.name,
-                              "is textured, no Lambertian surface, or the relay wall",
+                              "is textured or has colours of vertices, is no Lambertian surface, "
+                              "or the relay wall",
                               "must be Lambertian with one albedo, and hidden");
         }
         core::append_mesh(object.mesh, joined.mesh);

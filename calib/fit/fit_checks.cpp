@@ -178,6 +178,21 @@ void warn_of_high_values(const SceneModel& model, FitResult& result) {
     }
 }
 
+// Whole objects at one place are most likely one that was added twice.
+void warn_of_coincident_bodies(const FitDriver& driver, FitResult& result) {
+    std::vector<renderer::Object> objects = driver.geometry.objects;
+    const double tolerance_m =
+        renderer::coincidence_m(objects, driver.input.capture.scan.path_ends());
+    for (const renderer::CoincidentFaces& faces : renderer::leave_out_covered_faces(
+             objects, renderer::FacePrecedence(objects), tolerance_m)) {
+        if (faces.num_left_out < faces.num_faces) continue;
+        result.warnings.push_back(
+            fmt::format("{} starts at the place of {}, and both count, since one is free to move",
+                        faces.object,
+                        faces.by));
+    }
+}
+
 }  // namespace
 
 double residual_correlation(const FitAgreement& fit) {
@@ -214,6 +229,7 @@ void add_warnings(const FitDriver& driver,
         }
     }
     warn_of_high_values(*driver.model, result);
+    warn_of_coincident_bodies(driver, result);
     if (driver.is_poisson) {
         warn_of_deviance(driver, stage.data->min_mean, result);
         check_for_light(stage.data->min_mean, result);

@@ -158,8 +158,9 @@ void match_brightness(const FitDriver& driver, FitDriver::Stage& stage, SceneSta
 }  // namespace
 
 FitDriver::FitDriver(const FitInput& fit_input, const core::Progress& progress)
-    : input(fit_input), settings(fit_input.settings) {
+    : input(fit_input), geometry(fit_input.geometry), settings(fit_input.settings) {
     validate(settings, "model: ");
+    count_places_once(progress);
     settings.response = core::resolve_response(settings.response, input.capture, "model: response");
     response = core::make_response(settings.response, "model: response");
     response_sigma_m = std::sqrt(core::moments(response).variance_m2);
@@ -182,7 +183,7 @@ FitDriver::FitDriver(const FitInput& fit_input, const core::Progress& progress)
     }
 
     scale_is_unknown = input.capture.unit == core::TransientUnit::Counts &&
-                       !input.capture.counts_per_radiance && !input.geometry.objects.empty() &&
+                       !input.capture.counts_per_radiance && !geometry.objects.empty() &&
                        !settings.free.objects.empty();
     if (scale_is_unknown) hold_one_albedo();
     if (!is_poisson) elimination = {scale_is_unknown, false};
@@ -194,7 +195,7 @@ FitDriver::FitDriver(const FitInput& fit_input, const core::Progress& progress)
             elimination.ambient = settings.free.parameters.erase(row->name) > 0;
         }
     }
-    model = std::make_unique<SceneModel>(input.geometry, settings);
+    model = std::make_unique<SceneModel>(geometry, settings);
     ambient_guess = quietest_level(data);
     is_cut = light_is_cut(data, ambient_guess);
     tolerance = settings.element_tolerance.value_or(is_poisson ? tolerance_for(total)
@@ -205,6 +206,25 @@ FitDriver::FitDriver(const FitInput& fit_input, const core::Progress& progress)
     solve_settings.prior = {settings.laplacian_weight, settings.free.prior_sigma};
     solve_settings.lowest_log_ambient = std::log(data.min_mean);
     solve_settings.stop_requested = progress.stop_requested;
+}
+
+void FitDriver::count_places_once(const core::Progress& progress) {
+    const std::vector<renderer::Object>& stated = input.geometry.objects;
+    const std::vector<renderer::CoincidentFaces> faces = renderer::leave_out_covered_faces(
+        geometry.objects,
+        face_precedence(stated, settings.free),
+        renderer::coincidence_m(stated, input.capture.scan.path_ends()));
+    for (const renderer::CoincidentFaces& of_object : faces) {
+        const bool is_free = std::ranges::any_of(settings.free.objects, [&](const auto& object) {
+            return object.name == of_object.object;
+        });
+        if (!is_free || of_object.num_left_out < of_object.num_faces) continue;
+        throw core::Error(
+            "model: free",
+            fmt::format("found '{}', which lies on {}", of_object.object, of_object.by),
+            "must free one of them");
+    }
+    if (!faces.empty() && progress.announce) progress.announce(renderer::describe(faces));
 }
 
 // Data of unknown scale leave one albedo open: the first free one stays at its start.

@@ -53,10 +53,13 @@ struct FitDriver {
                        int max_iterations,
                        const std::function<void(int)>& report) const;
 
+    /// Takes what lies on other faces of the model out of its geometry, and says so.
+    void count_places_once(const core::Progress& progress);
     void hold_one_albedo();
 
     const FitInput& input;
-    FitSettings settings;  ///< without the freedoms that elimination takes out
+    renderer::SceneGeometry geometry;  ///< the input's, what lies at one place counted once
+    FitSettings settings;              ///< without the freedoms that elimination takes out
     core::InstrumentResponse response;
     double response_sigma_m = 0.0;
     bool is_poisson = false;

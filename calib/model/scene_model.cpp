@@ -25,9 +25,10 @@ void check_material(const renderer::Object& object) {
                               return t.can_be_fitted();
                           }) + " to be fitted");
     }
-    if (object.material.albedo_texture) {
-        throw core::Error(
-            "model: object " + object.name, "has a texture", "must have one albedo to be fitted");
+    if (!object.has_one_albedo()) {
+        throw core::Error("model: object " + object.name,
+                          "has a texture or colours of vertices",
+                          "must have one albedo to be fitted");
     }
 }
 
@@ -92,7 +93,34 @@ renderer::NodeGroup moving_node(const renderer::Object& object, const FreeSettin
     return found.value_or(nodes.back());
 }
 
+bool may_move(const FreeObject& object) {
+    return std::any_of(parameters().begin(), parameters().end(), [&](const Parameter* row) {
+        return object.frees(*row) && row->effect != Effect::Multiplies;
+    });
+}
+
 }  // namespace
+
+renderer::FacePrecedence face_precedence(std::span<const renderer::Object> objects,
+                                         const FreeSettings& free) {
+    renderer::FacePrecedence precedence(objects);
+    std::vector<bool> is_free;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        precedence.group[i] = 0;
+        is_free.push_back(false);
+        if (objects[i].role == renderer::Role::RelayWall) continue;
+        const std::string name = moving_node(objects[i], free).name;
+        for (std::size_t f = 0; f < free.objects.size(); ++f) {
+            if (free.objects[f].name != name) continue;
+            is_free[i] = true;
+            if (may_move(free.objects[f])) precedence.group[i] = f + 1;
+        }
+    }
+    std::stable_partition(precedence.order.begin(), precedence.order.end(), [&](std::size_t i) {
+        return is_free[i] || objects[i].role == renderer::Role::RelayWall;
+    });
+    return precedence;
+}
 
 SceneModel::SceneModel(const renderer::SceneGeometry& geometry, const FitSettings& settings)
     : geometry_(geometry), num_points_(static_cast<std::size_t>(settings.free.point_scatterers)) {

@@ -3,7 +3,9 @@
 
 #include "calib/model/parameter.h"
 #include "renderer/material/scene_geometry.h"
+#include "renderer/scene/coincident_faces.h"
 
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,6 +63,11 @@ class SceneModel {
     int num_columns_ = 0;
     std::size_t num_points_ = 0;
 };
+
+/// Which faces of a model count where several lie at one place: those of bodies that are freed,
+/// then of the others. Bodies that may move are apart from all others.
+renderer::FacePrecedence face_precedence(std::span<const renderer::Object> objects,
+                                         const FreeSettings& free);
 
 /// Whether two states show a body in different places, or nearly in the same but turned by so much
 /// that it covers itself only because it is nearly symmetric.

@@ -3,6 +3,7 @@
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/exr_attributes.h"
 #include "renderer/core/error.h"
+#include "renderer/core/precision.h"
 #include "renderer/core/json_file.h"
 
 #include <fmt/core.h>
@@ -220,8 +221,13 @@ std::vector<std::string> write_points(const std::string& path,
             to_channel(capture.by_order[i], capture, is_wall);
     }
     write_exr_table(path, table);
-    if (!capture.sequence && !capture.velocity) return {};
-    return {"frames and velocities are left out"};
+    std::vector<std::string> losses;
+    if (capture.sequence || capture.velocity)
+        losses.push_back("frames and velocities are left out");
+    if (std::ranges::any_of(scan.path_ends(), core::needs_double)) {
+        losses.push_back("points so far from the origin are rounded to single precision");
+    }
+    return losses;
 }
 
 }  // namespace

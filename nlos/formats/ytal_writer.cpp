@@ -4,6 +4,10 @@
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/ytal_layout.h"
 #include "renderer/core/json_file.h"
+#include "renderer/core/precision.h"
+
+#include <algorithm>
+#include <span>
 
 namespace nlos {
 namespace {
@@ -23,13 +27,26 @@ void write_no_points(Hdf5Writer& file, const std::string& device) {
         device + "_grid_format", grid_format_members(), static_cast<int>(GridFormat::Unknown));
 }
 
+// In single precision, as y-tal writes it, unless points are too far from the world's origin.
+void write_positions(Hdf5Writer& file,
+                     const std::string& name,
+                     const Shape& shape,
+                     const std::vector<core::Vec3>& positions) {
+    if (std::ranges::any_of(positions, core::needs_double)) {
+        const double* const first = positions.front().data();
+        file.write(name, shape, std::span<const double>(first, 3 * positions.size()));
+    } else {
+        file.write(name, shape, to_floats(positions));
+    }
+}
+
 void write_points(Hdf5Writer& file,
                   const std::string& device,
                   const WallPoints& points,
                   const ArrayLayout& layout) {
     Shape shape = point_extents(points, layout);
     shape.push_back(3);
-    file.write(device + "_grid_xyz", shape, to_floats(points.positions));
+    write_positions(file, device + "_grid_xyz", shape, points.positions);
     file.write(device + "_grid_normals", shape, to_floats(points.normals));
     file.write_enum(device + "_grid_format",
                     grid_format_members(),
@@ -121,8 +138,8 @@ std::vector<std::string> write_ytal(const std::string& path,
     Hdf5Writer file(path);
     write_transient(file, "H", h_shape, capture.transient);
     file.write_enum("H_format", h_format_members(), static_cast<int>(h_format(layout)));
-    file.write("sensor_xyz", {3}, to_floats({scan.devices().detector}));
-    file.write("laser_xyz", {3}, to_floats({scan.devices().laser}));
+    write_positions(file, "sensor_xyz", {3}, {scan.devices().detector});
+    write_positions(file, "laser_xyz", {3}, {scan.devices().laser});
     if (scan.has_wall()) {
         write_points(file, "sensor", scan.wall().sensing, layout);
         write_points(file, "laser", scan.wall().illumination, layout);

@@ -15,6 +15,7 @@ using core::Vec2;
 using core::Vec3;
 
 constexpr double kCoplanar = 1e-10;  ///< of the object's size, and of a metre
+constexpr double kRoundings = 2.0;   ///< by which corners of one plane lie beside it
 constexpr auto kFree = std::numeric_limits<std::uint32_t>::max();  ///< a facet without a patch
 
 // Which facets of the same object share an edge. Corners at the same place count as one: meshes
@@ -54,16 +55,17 @@ std::vector<std::vector<std::uint32_t>> neighbours_of(const Scene& scene) {
 }
 
 // Largest distance to the plane at which an object's corners count as lying on it.
-std::vector<double> coplanar_distances(std::span<const Facet> facets) {
+std::vector<double> coplanar_distances(const Scene& scene) {
     std::vector<Eigen::AlignedBox3d> boxes;
-    for (const Facet& facet : facets) {
+    for (const Facet& facet : scene.facets()) {
         if (facet.object >= boxes.size()) boxes.resize(facet.object + 1);
         for (const Vec3& corner : facet.corners()) boxes[facet.object].extend(corner);
     }
     std::vector<double> distances;
     for (const auto& box : boxes) {
         const double size = box.isEmpty() ? 0.0 : box.diagonal().norm();
-        distances.push_back(kCoplanar * std::min(1.0, size));
+        distances.push_back(
+            std::max(kCoplanar * std::min(1.0, size), kRoundings * scene.stated_rounding_m()));
     }
     return distances;
 }
@@ -81,7 +83,7 @@ PlanarPatches::PlanarPatches(const Scene& scene)
     : facets_(scene.facets()), patch_of_facet_(facets_.size(), kFree), cell_begin_{0} {
     const std::span<const Facet> facets = facets_;
     const auto neighbours = neighbours_of(scene);
-    const auto distances = coplanar_distances(facets);
+    const auto distances = coplanar_distances(scene);
     // From the largest facet outwards, every corner against that facet's plane: nothing drifts.
     std::vector<std::uint32_t> order(facets.size());
     std::iota(order.begin(), order.end(), 0U);

@@ -50,7 +50,7 @@ PerBox squared_distances(const Eigen::ArrayX3d& lower,
 
 }  // namespace
 
-WallBoxes::WallBoxes(const core::WallScan& scan, const Vec3& origin)
+WallBoxes::WallBoxes(const core::WallScan& scan, const Vec3& origin, double rounding_m)
     : confocal_(scan.pattern == core::ScanPattern::Confocal),
       sensor_(make_boxes(scan.sensing, origin)) {
     if (!confocal_) light_ = make_boxes(scan.illumination, origin);
@@ -62,18 +62,19 @@ WallBoxes::WallBoxes(const core::WallScan& scan, const Vec3& origin)
     }
     const auto [least, most] = core::device_leg_range_m(scan);
     device_legs_ = {least, most};
-    find_planes(scan.sensing, origin);
-    if (!confocal_) find_planes(scan.illumination, origin);
+    find_planes(scan.sensing, origin, rounding_m);
+    if (!confocal_) find_planes(scan.illumination, origin, rounding_m);
     if (planes_.size() == 1) plane_ = planes_.front();
 }
 
-void WallBoxes::find_planes(const core::WallPoints& points, const Vec3& origin) {
+void WallBoxes::find_planes(const core::WallPoints& points, const Vec3& origin, double rounding_m) {
+    constexpr double kRoundings = 4.0;
     for (std::size_t i = 0; i < points.size() && planes_.size() <= kMaxPlanes; ++i) {
         const Vec3& normal = points.normals[i];
         const double height = normal.dot(points.positions[i] - origin);
+        const double apart = std::max(1e-12 * (1.0 + std::abs(height)), kRoundings * rounding_m);
         const bool is_known = std::any_of(planes_.begin(), planes_.end(), [&](const auto& plane) {
-            return plane.first == normal &&
-                   std::abs(plane.second - height) < 1e-12 * (1.0 + std::abs(height));
+            return plane.first == normal && std::abs(plane.second - height) < apart;
         });
         if (!is_known) planes_.emplace_back(normal, height);
     }

@@ -24,8 +24,9 @@ struct LegBounds {
 /// The points of a scan in a few boxes, to bound their distances from a part of the scene.
 class WallBoxes {
  public:
-    /// origin   what positions are relative to [m, world]
-    WallBoxes(const core::WallScan& scan, const core::Vec3& origin);
+    /// origin       what positions are relative to [m, world]
+    /// rounding_m   of the positions, by which points of one plane may lie beside it
+    WallBoxes(const core::WallScan& scan, const core::Vec3& origin, double rounding_m);
 
     LegBounds legs(const core::Vec3& center, double radius) const;
     /// The exact least distances from points to a sphere, which legs() only bounds.
@@ -50,7 +51,7 @@ class WallBoxes {
         std::vector<Eigen::Index> first_point;  ///< per box, and one past the last
     };
 
-    void find_planes(const core::WallPoints& points, const core::Vec3& origin);
+    void find_planes(const core::WallPoints& points, const core::Vec3& origin, double rounding_m);
     static Boxes make_boxes(const core::WallPoints& points, const core::Vec3& origin);
     static LengthBounds bounds(const Boxes& boxes, const core::Vec3& center, double radius);
     static double nearest(const Boxes& boxes, const core::Vec3& center, double radius);

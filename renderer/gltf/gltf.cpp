@@ -4,7 +4,9 @@
 #include "renderer/core/error.h"
 #include "renderer/core/process.h"
 #include "renderer/gltf/gltf_document.h"
+#include "renderer/gltf/gltf_features.h"
 #include "renderer/gltf/gltf_material.h"
+#include "renderer/gltf/gltf_pose.h"
 #include "renderer/gltf/gltf_primitive.h"
 
 #include <fmt/core.h>
@@ -12,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace renderer {
 namespace {
@@ -44,6 +47,13 @@ core::Transform node_transform(const tinygltf::Node& node, const std::string& wh
     return parent_from_node;
 }
 
+/// What KHR_node_visibility says of a node itself.
+bool is_visible(const core::Json& node) {
+    return node.value("extensions", core::Json::object())
+        .value("KHR_node_visibility", core::Json::object())
+        .value("visible", true);
+}
+
 constexpr std::size_t kMaxGroups = 8;  // a chain of nodes, each below all before it, stays small
 
 /// Walks the node tree and gathers objects and cameras in world coordinates.
@@ -58,9 +68,14 @@ class SceneReader {
     SceneGeometry read() {
         const std::vector<Visit> visits = walk_nodes();
         check_memory(visits);
+        geometry_.warnings = document_.warnings;
+        world_from_node_.resize(model_.nodes.size());
+        for (const Visit& visit : visits) {
+            world_from_node_[static_cast<std::size_t>(visit.node)] = visit.world_from_node;
+        }
         for (const Visit& visit : visits) {
             const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
-            if (node.mesh >= 0) add_objects(visit, node.mesh);
+            if (node.mesh >= 0 && visit.is_visible) add_objects(visit, node.mesh);
             if (node.camera >= 0) add_camera(visit, node.camera);
         }
         if (geometry_.objects.empty()) {
@@ -75,6 +90,7 @@ class SceneReader {
         int node = 0;
         core::Transform world_from_node = core::Transform::Identity();
         NlosExtras extras;
+        bool is_visible = true;
         std::vector<NodeGroup> groups{};
     };
 
@@ -98,7 +114,7 @@ class SceneReader {
     std::vector<Visit> walk_nodes() const {
         std::vector<Visit> pending;
         for (const int root : root_nodes())
-            pending.push_back({root, core::Transform::Identity(), {}, {}});
+            pending.push_back({root, core::Transform::Identity(), {}, true, {}});
         std::reverse(pending.begin(), pending.end());
         std::vector<Visit> visits;
         std::vector<bool> visited(model_.nodes.size(), false);
@@ -116,7 +132,8 @@ class SceneReader {
             const auto& children = model_.nodes[index].children;
             const auto groups = groups_below(visit);
             for (auto child = children.rbegin(); child != children.rend(); ++child) {
-                pending.push_back({*child, visit.world_from_node, visit.extras, groups});
+                pending.push_back(
+                    {*child, visit.world_from_node, visit.extras, visit.is_visible, groups});
             }
             visits.push_back(std::move(visit));
         }
@@ -136,8 +153,9 @@ class SceneReader {
         const auto index = static_cast<std::size_t>(visit.node);
         const std::string where = document_.where(fmt::format("nodes[{}]", index));
         visit.world_from_node = visit.world_from_node * node_transform(model_.nodes[index], where);
-        visit.extras =
-            read_nlos_extras(document_.json["nodes"][index], where).or_else(visit.extras);
+        const core::Json& json = document_.json["nodes"][index];
+        visit.extras = read_nlos_extras(json, where).or_else(visit.extras);
+        visit.is_visible = visit.is_visible && is_visible(json);
         if (!visit.world_from_node.matrix().allFinite()) {
             throw core::Error(where, "its transform overflows", "must be finite");
         }
@@ -151,7 +169,8 @@ class SceneReader {
             const int mesh = model_.nodes[static_cast<std::size_t>(visit.node)].mesh;
             if (mesh < 0) continue;
             const PrimitiveReader::Size size = primitives_.claimed_size(mesh);
-            bytes += sizeof(Object) + size.bytes + kBytesPerTriangle * size.triangles;
+            bytes += static_cast<double>(num_instances_of(document_, visit.node)) *
+                     (sizeof(Object) + size.bytes + kBytesPerTriangle * size.triangles);
         }
         constexpr double kAlwaysThere = 1e8;  // asking the system takes milliseconds
         if (bytes < kAlwaysThere) return;
@@ -164,57 +183,71 @@ class SceneReader {
         }
     }
 
-    void add_objects(const Visit& visit, int mesh_index) {
-        const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
-        const tinygltf::Mesh& mesh = model_.meshes[static_cast<std::size_t>(mesh_index)];
-        for (const Primitive& primitive : primitives_.read(mesh_index)) {
-            const LoadedMaterial& loaded = materials_.read(primitive.material);
-            const NlosExtras extras = visit.extras.or_else(loaded.extras);
-            Object object;
-            object.name = !node.name.empty()   ? node.name
-                          : !mesh.name.empty() ? mesh.name
-                                               : fmt::format("node{}", visit.node);
-            object.material = loaded.material;
-            for (const std::string& text : loaded.warnings) {
-                auto& all = geometry_.warnings;
-                if (std::find(all.begin(), all.end(), text) == all.end()) all.push_back(text);
+    void add_objects(const Visit& visit, int mesh) {
+        const auto index = static_cast<std::size_t>(visit.node);
+        const std::string where = document_.where(fmt::format("nodes[{}]", index));
+        const tinygltf::Node& node = model_.nodes[index];
+        note_features(GltfPart::Node,
+                      document_.json["nodes"][index],
+                      document_.json,
+                      "node " + (node.name.empty() ? std::to_string(index) : node.name),
+                      where,
+                      geometry_.warnings);
+        const std::vector<double> weights = morph_weights(document_, visit.node);
+        std::optional<Skin> skin;
+        if (node.skin >= 0) skin.emplace(document_, node.skin, world_from_node_);
+        const std::vector<core::Transform> instances = instances_of(document_, visit.node);
+        for (const Primitive& primitive : primitives_.read(mesh)) {
+            add_warnings(primitive.warnings);
+            if (primitive.triangles.empty()) continue;
+            const std::vector<core::Vec3> positions = morphed_positions(primitive, weights);
+            Object object = object_of(primitive, visit);
+            if (skin) {
+                object.world_from_node = skin->world_from_first_joint();
+                object.mesh = posed_mesh(skin->carry(primitive, positions, where),
+                                         core::Transform::Identity(),
+                                         primitive.triangles,
+                                         where);
+                geometry_.objects.push_back(std::move(object));
+                continue;
             }
-            object.material.model = extras.model_or(object.material.model);
-            object.role = extras.role.value_or(Role::Hidden);
-            object.ellipsoidal_exclude = extras.ellipsoidal_exclude.value_or(false);
-            object.velocity_m_per_s = extras.velocity_m_per_s.value_or(core::Vec3::Zero());
-            object.world_from_node = visit.world_from_node;
-            object.groups = visit.groups;
-            object.uv = primitive.uv;
-            object.mesh = world_mesh(primitive, visit);
-            geometry_.objects.push_back(std::move(object));
+            for (const core::Transform& instance : instances) {
+                object.world_from_node = visit.world_from_node * instance;
+                object.mesh =
+                    posed_mesh(positions, object.world_from_node, primitive.triangles, where);
+                geometry_.objects.push_back(object);
+            }
         }
     }
 
-    core::TriangleMesh world_mesh(const Primitive& primitive, const Visit& visit) const {
-        const std::string where = document_.where(fmt::format("nodes[{}]", visit.node));
-        core::TriangleMesh mesh;
-        mesh.vertices.reserve(primitive.positions.size());
-        for (const core::Vec3& position : primitive.positions) {
-            mesh.vertices.push_back(visit.world_from_node * position);
-            if (!mesh.vertices.back().allFinite()) {
-                throw core::Error(where, "its vertices overflow", "must be finite");
-            }
+    /// A node's object, without its mesh and its place.
+    Object object_of(const Primitive& primitive, const Visit& visit) {
+        const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
+        const tinygltf::Mesh& mesh = model_.meshes[static_cast<std::size_t>(node.mesh)];
+        const LoadedMaterial& loaded = materials_.read(primitive.material);
+        const NlosExtras extras = visit.extras.or_else(loaded.extras);
+        add_warnings(loaded.warnings);
+        Object object;
+        object.name = !node.name.empty()   ? node.name
+                      : !mesh.name.empty() ? mesh.name
+                                           : fmt::format("node{}", visit.node);
+        object.material = loaded.material;
+        object.material.albedo *= primitive.albedo;
+        object.material.model = extras.model_or(object.material.model);
+        object.role = extras.role.value_or(Role::Hidden);
+        object.ellipsoidal_exclude = extras.ellipsoidal_exclude.value_or(false);
+        object.velocity_m_per_s = extras.velocity_m_per_s.value_or(core::Vec3::Zero());
+        object.groups = visit.groups;
+        object.uv = primitive.uv;
+        object.vertex_albedo = primitive.vertex_albedo;
+        return object;
+    }
+
+    void add_warnings(const std::vector<std::string>& warnings) {
+        auto& all = geometry_.warnings;
+        for (const std::string& text : warnings) {
+            if (std::find(all.begin(), all.end(), text) == all.end()) all.push_back(text);
         }
-        // A mirroring transform turns front faces over; keeping them in front is glTF's rule.
-        const core::Mat3 linear = visit.world_from_node.linear();
-        const bool mirrored = linear.determinant() < 0.0;
-        for (const auto& [a, b, c] : primitive.triangles) {
-            // Edges are transformed on their own: differences of far world points lose digits.
-            const core::Vec3 ab = linear * (primitive.positions[b] - primitive.positions[a]);
-            const core::Vec3 ac = linear * (primitive.positions[c] - primitive.positions[a]);
-            if (!core::has_area(ab, ac)) continue;
-            mesh.triangles.push_back(mirrored ? Triangle{a, c, b} : Triangle{a, b, c});
-        }
-        if (mesh.triangles.empty()) {
-            throw core::Error(where, "its mesh has no triangle with an area", "must have one");
-        }
-        return mesh;
     }
 
     void add_camera(const Visit& visit, int camera_index) {
@@ -242,6 +275,7 @@ class SceneReader {
     const tinygltf::Model& model_;
     MaterialReader materials_;
     PrimitiveReader primitives_;
+    std::vector<std::optional<core::Transform>> world_from_node_;  ///< of those in the scene
     SceneGeometry geometry_;
 };
 

@@ -9,9 +9,11 @@ namespace renderer {
 
 /// Reads a glTF 2.0 file, text (.gltf) or binary (.glb) by content, into world coordinates.
 ///
-/// Triangles, strips and fans become objects; points and lines are left out, triangles without area
-/// dropped. Metallic materials are rough conductors, others diffuse (see render.dielectric_specular
-/// for the rest of what glTF says of these). The extras `nlos_role`, `nlos_ellipsoidal_exclude`,
+/// Triangles, strips and fans become objects, by their morph targets, skins and instances as the
+/// file poses them; animations are not played. Points and lines are left out, triangles without
+/// area dropped. Metallic materials are rough conductors, others diffuse (see
+/// render.dielectric_specular for the rest of what glTF says of these). What becomes of each
+/// feature stands in gltf_features.h. The extras `nlos_role`, `nlos_ellipsoidal_exclude`,
 /// `nlos_velocity_m_per_s`, `nlos_retroreflective` and `nlos_surface_model` are taken from the
 /// node, else from its nearest ancestor that has them, else from the material.
 ///

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 namespace renderer {
 namespace {
@@ -175,18 +176,30 @@ Elements<N> read_elements(const GltfDocument& document,
     return elements;
 }
 
+/// The type of elements of N numbers, with its name.
+template <int N>
+constexpr std::pair<int, const char*> kTypeOf{};
+template <>
+constexpr std::pair<int, const char*> kTypeOf<2>{TINYGLTF_TYPE_VEC2, "VEC2"};
+template <>
+constexpr std::pair<int, const char*> kTypeOf<3>{TINYGLTF_TYPE_VEC3, "VEC3"};
+template <>
+constexpr std::pair<int, const char*> kTypeOf<4>{TINYGLTF_TYPE_VEC4, "VEC4"};
+template <>
+constexpr std::pair<int, const char*> kTypeOf<16>{TINYGLTF_TYPE_MAT4, "MAT4"};
+
 template <int N>
 Elements<N> read_attribute(const GltfDocument& document, int index, const char* meaning) {
     const tinygltf::Accessor& accessor = document.model->accessors[static_cast<std::size_t>(index)];
     const std::string where = fmt::format("accessors[{}]", index);
-    const int wanted = N == 2 ? TINYGLTF_TYPE_VEC2 : TINYGLTF_TYPE_VEC3;
+    const auto& [wanted, name] = kTypeOf<N>;
     if (accessor.type != wanted || !is_attribute_type(accessor.componentType)) {
         throw core::Error(
             document.where(where),
             fmt::format("is used for {} and has another type (componentType {})",
                         meaning,
                         accessor.componentType),
-            fmt::format("must be VEC{} of 5120, 5121, 5122, 5123 or 5126 (float)", N));
+            fmt::format("must be {} of 5120, 5121, 5122, 5123 or 5126 (float)", name));
     }
     Elements<N> elements = read_elements<N>(document, accessor, where);
     for (std::size_t i = 0; i < elements.size(); ++i) {
@@ -218,6 +231,29 @@ std::vector<core::Vec3> read_positions(const GltfDocument& document, int accesso
 
 std::vector<core::Vec2> read_texture_coordinates(const GltfDocument& document, int accessor) {
     return read_attribute<2>(document, accessor, "texture coordinates");
+}
+
+std::vector<core::Vec3> read_colours(const GltfDocument& document, int accessor) {
+    if (document.model->accessors[static_cast<std::size_t>(accessor)].type != TINYGLTF_TYPE_VEC4) {
+        return read_attribute<3>(document, accessor, "colours");
+    }
+    std::vector<core::Vec3> colours;
+    for (const auto& colour : read_attribute<4>(document, accessor, "colours")) {
+        colours.emplace_back(colour.head<3>());
+    }
+    return colours;
+}
+
+std::vector<Eigen::Vector4d> read_vectors4(const GltfDocument& document, int accessor) {
+    return read_attribute<4>(document, accessor, "rotations, joints or weights");
+}
+
+std::vector<Eigen::Matrix4d> read_matrices(const GltfDocument& document, int accessor) {
+    std::vector<Eigen::Matrix4d> matrices;
+    for (const auto& numbers : read_attribute<16>(document, accessor, "matrices")) {
+        matrices.emplace_back(Eigen::Map<const Eigen::Matrix4d>(numbers.data()));
+    }
+    return matrices;
 }
 
 std::vector<std::uint32_t> read_indices(const GltfDocument& document,

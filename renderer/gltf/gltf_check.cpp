@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/settings_json.h"
 #include "renderer/gltf/gltf_document.h"
+#include "renderer/gltf/gltf_features.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -22,6 +23,10 @@ struct Allowed {
 
 Allowed a_text() {
     return {"a text", [](const Json& value) { return value.is_string(); }};
+}
+
+Allowed a_number() {
+    return {"a number", [](const Json& value) { return value.is_number(); }};
 }
 
 Allowed a_flag() {
@@ -74,6 +79,7 @@ class GltfChecker {
                                   "accessors",
                                   "meshes",
                                   "nodes",
+                                  "skins",
                                   "scenes",
                                   "cameras",
                                   "materials",
@@ -91,13 +97,13 @@ class GltfChecker {
  private:
     /// Every value in use, buffers first: what is named there may be relied on afterwards.
     void check_values() const {
+        const std::string kTextureTransform =
+            "materials[].pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.";
         const struct {
-            const char* place;  ///< as check() reads it
+            std::string place;  ///< as check() reads it
             Allowed allowed;
         } kRules[] = {
-            {"extensionsRequired[]",
-             {"KHR_mesh_quantization or nothing",
-              [](const Json& value) { return value == "KHR_mesh_quantization"; }}},
+            {"extensionsRequired[]", a_text()},
             {"buffers[].byteLength!", count_from(1)},
             {"buffers[].uri", a_text()},
             {"bufferViews[].buffer!", index_of("buffers")},
@@ -123,7 +129,18 @@ class GltfChecker {
             {"meshes[].primitives![].indices", index_of("accessors")},
             {"meshes[].primitives![].material", index_of("materials")},
             {"meshes[].primitives![].mode", count_from(0)},
+            {"meshes[].primitives![].targets[].*", index_of("accessors")},
+            {"meshes[].weights[]", a_number()},
             {"nodes[].mesh", index_of("meshes")},
+            {"nodes[].skin", index_of("skins")},
+            {"nodes[].weights[]", a_number()},
+            {"nodes[].extensions.EXT_mesh_gpu_instancing.attributes.*", index_of("accessors")},
+            {"nodes[].extensions.KHR_node_visibility.visible", a_flag()},
+            {"skins[].joints!",
+             {"a list of at least one node",
+              [](const Json& value) { return value.is_array() && !value.empty(); }}},
+            {"skins[].joints![]", index_of("nodes")},
+            {"skins[].inverseBindMatrices", index_of("accessors")},
             {"nodes[].camera", index_of("cameras")},
             {"nodes[].children[]", index_of("nodes")},
             {"nodes[].matrix", numbers(16)},
@@ -144,6 +161,10 @@ class GltfChecker {
             {"materials[].pbrMetallicRoughness.roughnessFactor", a_fraction()},
             {"materials[].pbrMetallicRoughness.baseColorTexture.index!", index_of("textures")},
             {"materials[].pbrMetallicRoughness.baseColorTexture.texCoord", count_from(0)},
+            {kTextureTransform + "offset", numbers(2)},
+            {kTextureTransform + "rotation", a_number()},
+            {kTextureTransform + "scale", numbers(2)},
+            {kTextureTransform + "texCoord", count_from(0)},
             {"textures[].source", index_of("images")},
             {"textures[].sampler", index_of("samplers")},
             {"images[].uri", a_text()},
@@ -264,6 +285,7 @@ class GltfChecker {
 
 void check_gltf_json(const Json& json, const std::string& path) {
     GltfChecker(json, path).check();
+    check_required_extensions(json, path);
 }
 
 }  // namespace renderer

@@ -4,6 +4,7 @@
 #include "renderer/core/error.h"
 #include "renderer/core/json_file.h"
 #include "renderer/core/mapped_file.h"
+#include "renderer/gltf/gltf_features.h"
 
 #include <tiny_gltf.h>
 
@@ -195,6 +196,7 @@ GltfDocument read_gltf_document(const std::string& path) {
     document.json =
         core::parse_json(is_binary_gltf(bytes) ? find_json_chunk(bytes, path) : bytes, path);
     check_gltf_json(document.json, path);
+    note_features(GltfPart::File, document.json, document.json, "", path, document.warnings);
     document.model = load_model(bytes, document.json, path);
     return document;
 }

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace tinygltf {
 class Model;
@@ -21,6 +22,7 @@ struct GltfDocument {
     std::string path;
     core::Json json;
     std::shared_ptr<const tinygltf::Model> model;
+    std::vector<std::string> warnings{};  ///< what the file as a whole says that is not modelled
 
     /// `file: part`, the place that an error message names.
     std::string where(const std::string& part) const { return path + ": " + part; }
@@ -51,6 +53,15 @@ std::vector<core::Vec3> read_positions(const GltfDocument& document, int accesso
 
 /// Texture coordinates; as read_positions, with two components.
 std::vector<core::Vec2> read_texture_coordinates(const GltfDocument& document, int accessor);
+
+/// Vertex colours, linear: as read_positions, of three components or of four, the last left out.
+std::vector<core::Vec3> read_colours(const GltfDocument& document, int accessor);
+
+/// Quaternions, joints and their weights; as read_positions, with four components.
+std::vector<Eigen::Vector4d> read_vectors4(const GltfDocument& document, int accessor);
+
+/// Matrices of floats.
+std::vector<Eigen::Matrix4d> read_matrices(const GltfDocument& document, int accessor);
 
 /// Vertex indices: unsigned bytes, shorts or ints, sparse or not.
 ///

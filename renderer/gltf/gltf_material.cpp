@@ -3,6 +3,7 @@
 
 #include "renderer/core/error.h"
 #include "renderer/core/settings_json.h"
+#include "renderer/gltf/gltf_features.h"
 
 #include <fmt/core.h>
 #include <tiny_gltf.h>
@@ -128,31 +129,24 @@ std::shared_ptr<const Texture> read_texture(const GltfDocument& document,
     return texture;
 }
 
-// What makes a difference to light and is not modelled.
-std::vector<std::string> material_warnings(const tinygltf::Material& source, int index) {
-    const std::string name =
-        source.name.empty() ? fmt::format("material {}", index) : "material " + source.name;
-    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-    std::vector<std::string> warnings;
-    const auto warn = [&](bool applies, const std::string& text) {
-        if (applies) warnings.push_back(name + ": " + text);
+core::Json base_colour_texture(const core::Json& material) {
+    const core::Json pbr = material.value("pbrMetallicRoughness", core::Json::object());
+    return pbr.value("baseColorTexture", core::Json::object());
+}
+
+/// What KHR_texture_transform makes of texture coordinates, and of their set.
+void read_texture_transform(const core::Json& texture, LoadedMaterial& loaded) {
+    const core::Json transform = texture.value("extensions", core::Json::object())
+                                     .value("KHR_texture_transform", core::Json::object());
+    const auto pair = [&](const char* key, double otherwise) {
+        const auto numbers = transform.value(key, std::vector<double>(2, otherwise));
+        return core::Vec2(numbers[0], numbers[1]);
     };
-    warn(pbr.metallicFactor > 0.0 && pbr.metallicFactor < 1.0,
-         fmt::format("a metallicFactor of {:.3g} is taken as metal", pbr.metallicFactor));
-    warn(pbr.metallicRoughnessTexture.index >= 0,
-         "its metallic-roughness texture is not modelled; the factors count alone");
-    warn(source.normalTexture.index >= 0, "its normal map is not modelled");
-    warn(source.emissiveTexture.index >= 0 ||
-             std::any_of(source.emissiveFactor.begin(),
-                         source.emissiveFactor.end(),
-                         [](double factor) { return factor > 0.0; }),
-         "its emission is not modelled");
-    warn(source.alphaMode == "BLEND" || source.alphaMode == "MASK",
-         "its transparency is not modelled: it is opaque");
-    for (const auto& [extension, value] : source.extensions) {
-        warn(true, "its extension " + extension + " is not modelled");
-    }
-    return warnings;
+    // Turned anticlockwise as the image lies, whose v points down.
+    const Eigen::Rotation2Dd rotation(-transform.value("rotation", 0.0));
+    loaded.uv_transform =
+        Eigen::Translation2d(pair("offset", 0.0)) * rotation * Eigen::Scaling(pair("scale", 1.0));
+    loaded.texture_coordinate_set = transform.value("texCoord", loaded.texture_coordinate_set);
 }
 
 LoadedMaterial read_material(const GltfDocument& document, int index) {
@@ -162,24 +156,24 @@ LoadedMaterial read_material(const GltfDocument& document, int index) {
         pbr.baseColorFactor[0], pbr.baseColorFactor[1], pbr.baseColorFactor[2]};
 
     LoadedMaterial loaded;
+    loaded.colour = factor;
     loaded.material.name = source.name;
     loaded.material.model = model_of({.metallic = pbr.metallicFactor > 0.0});
     loaded.material.albedo = mean_albedo(factor);
     loaded.material.roughness = pbr.roughnessFactor;
-    loaded.warnings = material_warnings(source, index);
     const core::Json& json = document.json["materials"][static_cast<std::size_t>(index)];
-    const core::Json factors = json.value("pbrMetallicRoughness", core::Json::object());
-    if (!factors.contains("metallicFactor") && !factors.contains("roughnessFactor")) {
-        loaded.warnings.push_back(
-            fmt::format("material {}: without metallicFactor and roughnessFactor it is a rough "
-                        "metal by glTF's defaults",
-                        source.name.empty() ? std::to_string(index) : source.name));
-    }
+    const std::string where = document.where(fmt::format("materials[{}]", index));
+    const std::string name =
+        "material " + (source.name.empty() ? std::to_string(index) : source.name);
+    note_features(GltfPart::Material, json, document.json, name, where, loaded.warnings);
     if (pbr.baseColorTexture.index >= 0) {
+        const core::Json texture = base_colour_texture(json);
+        note_features(GltfPart::Texture, texture, document.json, name, where, loaded.warnings);
         loaded.material.albedo_texture = read_texture(document, pbr.baseColorTexture, factor);
         loaded.texture_coordinate_set = pbr.baseColorTexture.texCoord;
+        read_texture_transform(texture, loaded);
     }
-    loaded.extras = read_nlos_extras(json, document.where(fmt::format("materials[{}]", index)));
+    loaded.extras = read_nlos_extras(json, where);
     return loaded;
 }
 

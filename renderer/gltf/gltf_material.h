@@ -48,8 +48,10 @@ NlosExtras read_nlos_extras(const core::Json& owner, const std::string& where);
 struct LoadedMaterial {
     Material material;
     NlosExtras extras;
-    std::vector<std::string> warnings;  ///< what the file says of it that is not modelled
-    int texture_coordinate_set = 0;     ///< the n of TEXCOORD_n that the albedo texture uses
+    std::array<double, 3> colour{1.0, 1.0, 1.0};  ///< linear, whose mean is the albedo
+    std::vector<std::string> warnings;            ///< what the file says of it that is not modelled
+    int texture_coordinate_set = 0;  ///< the n of TEXCOORD_n that the albedo texture uses
+    Eigen::Affine2d uv_transform = Eigen::Affine2d::Identity();  ///< from these to the texture's
 };
 
 /// Reads materials and decodes their textures, each once.

@@ -2,11 +2,13 @@
 #include "renderer/gltf/gltf_primitive.h"
 
 #include "renderer/core/error.h"
+#include "renderer/gltf/gltf_features.h"
 
 #include <fmt/core.h>
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <functional>
 
 namespace renderer {
 namespace {
@@ -39,6 +41,26 @@ const Elements& read_once(std::map<int, Elements>& known, int accessor, const Re
                                 : known.emplace(accessor, read(accessor)).first->second;
 }
 
+template <class T>
+std::vector<T> picked(const std::vector<T>& all, const std::vector<std::uint32_t>& numbers) {
+    std::vector<T> result;
+    result.reserve(numbers.size());
+    for (const std::uint32_t number : numbers) result.push_back(all[number]);
+    return result;
+}
+
+/// Throws Error unless there are values of all vertices that are used, in order.
+template <class T>
+void require_vertices(const std::vector<T>& values,
+                      const std::vector<std::uint32_t>& used,
+                      const std::string& where,
+                      const std::string& name) {
+    if (used.empty() || used.back() < values.size()) return;
+    throw core::Error(where,
+                      fmt::format("has {} {} and a vertex {}", values.size(), name, used.back()),
+                      "must have one for each vertex");
+}
+
 }  // namespace
 
 const std::vector<Primitive>& PrimitiveReader::read(int mesh_index) {
@@ -46,6 +68,7 @@ const std::vector<Primitive>& PrimitiveReader::read(int mesh_index) {
     if (found != loaded_.end()) return found->second;
     std::vector<Primitive> primitives;
     const auto& sources = document_.model->meshes[static_cast<std::size_t>(mesh_index)].primitives;
+    const core::Json& json = document_.json["meshes"][static_cast<std::size_t>(mesh_index)];
     for (std::size_t i = 0; i < sources.size(); ++i) {
         const std::string where =
             document_.where(fmt::format("meshes[{}].primitives[{}]", mesh_index, i));
@@ -53,8 +76,16 @@ const std::vector<Primitive>& PrimitiveReader::read(int mesh_index) {
             throw core::Error(
                 where, fmt::format("found mode {}", sources[i].mode), "must be 0 to 6");
         }
-        if (sources[i].mode < TINYGLTF_MODE_TRIANGLES) continue;
-        primitives.push_back(read_primitive(sources[i], where));
+        std::vector<std::string> warnings;
+        note_features(GltfPart::Primitive,
+                      json["primitives"][i],
+                      document_.json,
+                      "mesh " + json.value("name", std::to_string(mesh_index)),
+                      where,
+                      warnings);
+        const bool is_of_triangles = sources[i].mode >= TINYGLTF_MODE_TRIANGLES;
+        primitives.push_back(is_of_triangles ? read_primitive(sources[i], where) : Primitive{});
+        primitives.back().warnings = std::move(warnings);
     }
     return loaded_.emplace(mesh_index, std::move(primitives)).first->second;
 }
@@ -71,50 +102,119 @@ Primitive PrimitiveReader::read_primitive(const tinygltf::Primitive& source,
         read_once(positions_, position->second, [&](int accessor) {
             return read_positions(document_, accessor);
         });
-    const std::vector<core::Vec2>* const uv = uv_of(source, where, positions.size());
-
-    std::vector<std::uint32_t> indices;
-    if (source.indices >= 0) {
-        indices = read_indices(document_, source.indices, positions.size());
+    primitive.triangles = corners_of(source, where, positions.size());
+    const std::vector<std::uint32_t> used = renumber(positions.size(), primitive.triangles);
+    primitive.positions = picked(positions, used);
+    if (const auto* uv = uv_of(source, where, positions.size())) {
+        const Eigen::Affine2d& transform = materials_.read(source.material).uv_transform;
+        primitive.uv = picked(*uv, used);
+        for (core::Vec2& place : primitive.uv) place = transform * place;
     }
-    const std::size_t num_corners = source.indices >= 0 ? indices.size() : positions.size();
+    read_colours_of(source, where, used, primitive);
+    read_morphs(source, where, used, primitive);
+    read_influences(source, where, used, primitive);
+    return primitive;
+}
+
+std::vector<Triangle> PrimitiveReader::corners_of(const tinygltf::Primitive& source,
+                                                  const std::string& where,
+                                                  std::size_t num_positions) const {
+    std::vector<std::uint32_t> indices;
+    if (source.indices >= 0) indices = read_indices(document_, source.indices, num_positions);
+    const std::size_t num_corners = source.indices >= 0 ? indices.size() : num_positions;
     if (num_corners < 3 || (source.mode == TINYGLTF_MODE_TRIANGLES && num_corners % 3 != 0)) {
         throw core::Error(where,
                           fmt::format("has {} corners", num_corners),
                           "lists of triangles need a multiple of 3, strips and fans at least 3");
     }
-    primitive.triangles = triangle_corners(source.mode, static_cast<std::uint32_t>(num_corners));
-    if (source.indices >= 0) {
-        for (Triangle& triangle : primitive.triangles) {
-            for (std::uint32_t& corner : triangle) corner = indices[corner];
-        }
+    std::vector<Triangle> triangles =
+        triangle_corners(source.mode, static_cast<std::uint32_t>(num_corners));
+    if (source.indices < 0) return triangles;
+    for (Triangle& triangle : triangles) {
+        for (std::uint32_t& corner : triangle) corner = indices[corner];
     }
-    take_vertices(positions, uv, primitive);
-    return primitive;
+    return triangles;
 }
 
-/// Takes the vertices in use, in their order: primitives often share one long list.
-void PrimitiveReader::take_vertices(const std::vector<core::Vec3>& positions,
-                                    const std::vector<core::Vec2>* uv,
-                                    Primitive& primitive) {
-    if (renumbered_.size() < positions.size()) renumbered_.resize(positions.size(), kUnused);
+/// Numbers the vertices that triangles use anew, in their order: primitives often share one long
+/// list. Returns their numbers in that.
+std::vector<std::uint32_t> PrimitiveReader::renumber(std::size_t num_positions,
+                                                     std::vector<Triangle>& triangles) {
+    if (renumbered_.size() < num_positions) renumbered_.resize(num_positions, kUnused);
     std::vector<std::uint32_t> used;
-    for (const Triangle& triangle : primitive.triangles) {
+    for (const Triangle& triangle : triangles) {
         for (const std::uint32_t vertex : triangle) {
             if (renumbered_[vertex] == kUnused) used.push_back(vertex);
             renumbered_[vertex] = 0;
         }
     }
     std::sort(used.begin(), used.end());
-    for (std::uint32_t i = 0; i < used.size(); ++i) {
-        primitive.positions.push_back(positions[used[i]]);
-        if (uv) primitive.uv.push_back((*uv)[used[i]]);
-        renumbered_[used[i]] = i;
-    }
-    for (Triangle& triangle : primitive.triangles) {
+    for (std::uint32_t i = 0; i < used.size(); ++i) renumbered_[used[i]] = i;
+    for (Triangle& triangle : triangles) {
         for (std::uint32_t& vertex : triangle) vertex = renumbered_[vertex];
     }
     for (const std::uint32_t vertex : used) renumbered_[vertex] = kUnused;
+    return used;
+}
+
+/// COLOR_0 multiplies the base colour. Where it is the same everywhere, the albedo stays one.
+void PrimitiveReader::read_colours_of(const tinygltf::Primitive& source,
+                                      const std::string& where,
+                                      const std::vector<std::uint32_t>& used,
+                                      Primitive& primitive) const {
+    const auto attribute = source.attributes.find("COLOR_0");
+    if (attribute == source.attributes.end()) return;
+    const std::vector<core::Vec3> colours = read_colours(document_, attribute->second);
+    require_vertices(colours, used, where, "COLOR_0");
+    const core::Vec3 base(materials_.read(source.material).colour.data());
+    for (const core::Vec3& colour : picked(colours, used)) {
+        const double coloured = base.dot(colour.cwiseMax(0.0).cwiseMin(1.0));
+        primitive.vertex_albedo.push_back(base.sum() > 0.0 ? coloured / base.sum() : 0.0);
+    }
+    const auto& factors = primitive.vertex_albedo;
+    if (std::adjacent_find(factors.begin(), factors.end(), std::not_equal_to<>()) ==
+        factors.end()) {
+        primitive.albedo = factors.front();
+        primitive.vertex_albedo.clear();
+    }
+}
+
+void PrimitiveReader::read_morphs(const tinygltf::Primitive& source,
+                                  const std::string& where,
+                                  const std::vector<std::uint32_t>& used,
+                                  Primitive& primitive) const {
+    for (const auto& target : source.targets) {
+        std::vector<core::Vec3>& ways = primitive.morphs.emplace_back();
+        const auto attribute = target.find("POSITION");
+        if (attribute == target.end()) continue;
+        const std::vector<core::Vec3> all = read_positions(document_, attribute->second);
+        require_vertices(all, used, where, "ways of a morph target");
+        ways = picked(all, used);
+    }
+}
+
+void PrimitiveReader::read_influences(const tinygltf::Primitive& source,
+                                      const std::string& where,
+                                      const std::vector<std::uint32_t>& used,
+                                      Primitive& primitive) const {
+    for (int set = 0;; ++set) {
+        const auto joints = source.attributes.find(fmt::format("JOINTS_{}", set));
+        const auto weights = source.attributes.find(fmt::format("WEIGHTS_{}", set));
+        if (joints == source.attributes.end() || weights == source.attributes.end()) return;
+        const auto all_joints = read_vectors4(document_, joints->second);
+        const auto all_weights = read_vectors4(document_, weights->second);
+        require_vertices(all_joints, used, where, joints->first);
+        require_vertices(all_weights, used, where, weights->first);
+        std::vector<Influences>& of_vertices = primitive.influences.emplace_back();
+        for (const std::uint32_t vertex : used) {
+            Influences& influences = of_vertices.emplace_back();
+            for (int i = 0; i < 4; ++i) {
+                influences[static_cast<std::size_t>(i)] = {
+                    static_cast<std::uint32_t>(std::max(0.0, all_joints[vertex][i])),
+                    std::max(0.0, all_weights[vertex][i])};
+            }
+        }
+    }
 }
 
 const std::vector<core::Vec2>* PrimitiveReader::uv_of(const tinygltf::Primitive& source,
@@ -152,8 +252,9 @@ PrimitiveReader::Size PrimitiveReader::claimed_size(int mesh_index) const {
         const double corners = source.indices >= 0 ? count_of(source.indices) : positions;
         const double triangles = source.mode == TINYGLTF_MODE_TRIANGLES ? corners / 3.0 : corners;
         size.triangles += triangles;
-        size.bytes += std::min(positions, corners) * (sizeof(core::Vec3) + sizeof(core::Vec2)) +
-                      triangles * sizeof(Triangle);
+        const double per_vertex = sizeof(core::Vec3) + sizeof(core::Vec2) + sizeof(double) +
+                                  sizeof(core::Vec3) * static_cast<double>(source.targets.size());
+        size.bytes += std::min(positions, corners) * per_vertex + triangles * sizeof(Triangle);
     }
     return size;
 }

@@ -158,6 +158,7 @@ class ModelBuilder {
         primitive.material = add_material(object);
         primitive.attributes["POSITION"] = add_positions(object);
         if (!object.uv.empty()) primitive.attributes["TEXCOORD_0"] = add_uv(object);
+        if (!object.vertex_albedo.empty()) primitive.attributes["COLOR_0"] = add_colours(object);
         primitive.indices = add_indices(object.mesh);
         tinygltf::Mesh mesh;
         mesh.name = object.name;
@@ -248,6 +249,14 @@ class ModelBuilder {
             values.push_back(static_cast<float>(uv.y()));
         }
         return add_accessor(values, TINYGLTF_TYPE_VEC2);
+    }
+
+    int add_colours(const Object& object) {
+        std::vector<float> values;
+        for (const double albedo : object.vertex_albedo) {
+            values.insert(values.end(), 3, static_cast<float>(albedo));
+        }
+        return add_accessor(values, TINYGLTF_TYPE_VEC3);
     }
 
     int add_indices(const core::TriangleMesh& mesh) {

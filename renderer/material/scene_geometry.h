@@ -25,6 +25,7 @@ struct Object {
     std::string name;  ///< of the glTF node; several objects share it when a node has several
     core::TriangleMesh mesh;     ///< world coordinates; no triangle without area
     std::vector<core::Vec2> uv;  ///< texture coordinate per vertex; empty when there are none
+    std::vector<double> vertex_albedo{};  ///< factors of the albedo per vertex; empty: all are 1
     Material material;
     Role role = Role::Hidden;
     bool ellipsoidal_exclude = false;  ///< left out of the ellipsoidal connection technique
@@ -33,6 +34,9 @@ struct Object {
         core::Transform::Identity();  ///< where the node put it; translation() is its origin
     std::vector<NodeGroup>
         groups{};  ///< the nearest nodes above it that have a name, outermost first
+
+    /// Whether the albedo is the material's everywhere.
+    bool has_one_albedo() const { return !material.albedo_texture && vertex_albedo.empty(); }
 };
 
 /// A pinhole camera.

@@ -46,9 +46,9 @@ FacetTraits::FacetTraits(const Scene& scene, const std::vector<bool>& adds_third
         is_hidden_[i] = scene.is_hidden(i) ? 1.0 : 0.0;
         if (!adds_third_bounce[scene.facet(i).object]) continue;
         any_adds_ = true;
-        const Material& material = scene.object_of(i).material;
-        const auto constant = constant_value(make_bsdf(material));
-        if (constant && !material.albedo_texture) {
+        const Object& object = scene.object_of(i);
+        const auto constant = constant_value(make_bsdf(object.material));
+        if (constant && object.has_one_albedo()) {
             constant_[i] = *constant;
         } else {
             varies_[i] = 1;

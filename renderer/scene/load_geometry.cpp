@@ -19,6 +19,7 @@ void apply(const ObjectSettings& settings, Object& object) {
     if (settings.material) {
         const auto& [surface, albedo, roughness] = *settings.material;
         object.material = {object.name, surface, albedo, roughness, nullptr};
+        object.vertex_albedo.clear();
     }
     if (settings.retroreflective) {
         object.material.model = model_of({.retroreflective = *settings.retroreflective});

@@ -97,6 +97,10 @@ struct RayCaster::Embree {
     }
 };
 
+double ray_offset_m(const Eigen::AlignedBox3d& box) {
+    return kRoundingSteps * 0.5 * box.sizes().maxCoeff();
+}
+
 RayCaster::RayCaster(std::span<const std::array<Vec3, 3>> corners, std::span<const Vec3> extra)
     : embree_(std::make_unique<Embree>()), corners_(corners.begin(), corners.end()) {
     Eigen::AlignedBox3d box;
@@ -105,7 +109,8 @@ RayCaster::RayCaster(std::span<const std::array<Vec3, 3>> corners, std::span<con
     }
     for (const Vec3& point : extra) box.extend(point);
     origin_ = box.center();
-    offset_m_ = kRoundingSteps * 0.5 * box.sizes().maxCoeff();
+    half_size_m_ = 0.5 * box.sizes().maxCoeff();
+    offset_m_ = ray_offset_m(box);
     embree_->add_triangles(corners, origin_);
 }
 

@@ -64,12 +64,16 @@ struct alignas(64) SegmentEnds {
     }
 };
 
+/// Distance by which the ends of segments leave surfaces within a box [m]: a bound of the rounding
+/// of coordinates of that size to single precision.
+double ray_offset_m(const Eigen::AlignedBox3d& box);
+
 /// Ray queries against a fixed set of triangles (Embree, robust mode).
 ///
 /// Embree works in single precision. Vertices are therefore stored relative to the centre of the
 /// set, and segments between surface points are shortened by moving their ends off the surfaces by
-/// offset_m(), a bound of the rounding of coordinates of that size: small against 0.1 mm facets,
-/// and independent of how far the set lies from the world's origin.
+/// offset_m(), see ray_offset_m(): small against 0.1 mm facets, and independent of how far the set
+/// lies from the world's origin.
 class RayCaster {
  public:
     /// corners   three world points per triangle [m]
@@ -82,7 +86,10 @@ class RayCaster {
 
     /// Distance by which segment ends leave their surfaces [m].
     double offset_m() const { return offset_m_; }
+    /// The centre of the box of the set and the extra points.
     const core::Vec3& origin() const { return origin_; }
+    /// Half of the longest side of that box [m].
+    double half_size_m() const { return half_size_m_; }
 
     /// Nearest triangle along a ray that starts on a surface with `normal` (unit, either side).
     std::optional<RayHit> first_hit(const core::Vec3& from,
@@ -129,6 +136,7 @@ class RayCaster {
     struct Embree;
     std::unique_ptr<Embree> embree_;
     core::Vec3 origin_ = core::Vec3::Zero();
+    double half_size_m_ = 0.0;
     double offset_m_ = 0.0;
     std::vector<std::array<core::Vec3, 3>> corners_;  ///< for distances in double precision
 };

@@ -2,8 +2,10 @@
 #include "renderer/scene/scene.h"
 
 #include "renderer/scene/load_geometry.h"
+#include "renderer/scene/scene_checks.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace renderer {
 namespace {
@@ -75,8 +77,17 @@ std::vector<std::array<Vec3, 3>> corners_of(std::span<const Facet> facets) {
     return corners;
 }
 
-Vec2 texture_coordinates(const Object& object, const Facet& facet, const Vec3& position) {
-    // Barycentric weights by least squares in the facet's plane.
+// Of the coordinates of facets [m].
+double coordinate_rounding_m(std::span<const Facet> facets) {
+    double largest = 0.0;
+    for (const Facet& facet : facets) {
+        largest = std::max(largest, facet.corner.cwiseAbs().maxCoeff());
+    }
+    return std::numeric_limits<double>::epsilon() * largest;
+}
+
+// Weights of the second and the third corner, by least squares in the facet's plane.
+Vec2 corner_weights(const Facet& facet, const Vec3& position) {
     const Vec3 offset = position - facet.corner;
     const double g11 = facet.edge1.squaredNorm();
     const double g12 = facet.edge1.dot(facet.edge2);
@@ -84,43 +95,42 @@ Vec2 texture_coordinates(const Object& object, const Facet& facet, const Vec3& p
     const double p1 = offset.dot(facet.edge1);
     const double p2 = offset.dot(facet.edge2);
     const double determinant = g11 * g22 - g12 * g12;
-    const double b1 = (g22 * p1 - g12 * p2) / determinant;
-    const double b2 = (g11 * p2 - g12 * p1) / determinant;
-    const auto& [i0, i1, i2] = object.mesh.triangles[facet.triangle];
-    return (1.0 - b1 - b2) * object.uv[i0] + b1 * object.uv[i1] + b2 * object.uv[i2];
-}
-
-// A grid lies on the rectangle of `relay_wall`; a mesh in its place has to be there as well.
-void require_on_wall_mesh(const Scene& scene,
-                          const core::WallPoints& points,
-                          const std::string& key) {
-    constexpr double kTolerance_m = 1e-3;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const Vec3& normal = points.normals[i];
-        const Vec3 above = points.positions[i] + kTolerance_m * normal;
-        const auto hit = scene.first_hit(above, -normal, -normal);
-        if (hit && !scene.is_hidden(hit->facet) &&
-            (hit->position - points.positions[i]).norm() < kTolerance_m) {
-            continue;
-        }
-        throw core::Error("scan." + key,
-                          "found a grid that does not lie on the mesh with the role relay_wall",
-                          "must be given as explicit points: " + key + "_m and normals");
-    }
+    return {(g22 * p1 - g12 * p2) / determinant, (g11 * p2 - g12 * p1) / determinant};
 }
 
 }  // namespace
 
 Scene::Scene(SceneGeometry geometry, const core::Scan& scan, const RelayWall& wall)
-    : geometry_(with_wall(std::move(geometry), scan, wall)),
+    : Scene(with_wall(std::move(geometry), scan, wall), scan.path_ends(), wall.albedo) {}
+
+Scene::Scene(SceneGeometry geometry, const std::vector<Vec3>& path_ends, double wall_albedo)
+    : geometry_(std::move(geometry)),
+      coincident_faces_(leave_out_covered_faces(geometry_.objects,
+                                                FacePrecedence(geometry_.objects),
+                                                coincidence_m(geometry_.objects, path_ends))),
       facets_(make_facets(geometry_)),
-      wall_albedo_(wall.albedo),
-      rays_(corners_of(facets_), scan.path_ends()) {
+      wall_albedo_(wall_albedo),
+      rays_(corners_of(facets_), path_ends),
+      stated_rounding_m_(coordinate_rounding_m(facets_)) {
     for (const Object& object : geometry_.objects) bsdfs_.push_back(make_bsdf(object.material));
     if (const Object* mesh = relay_wall_mesh(geometry_)) {
         has_relay_wall_ = true;
         wall_albedo_ = mesh->material.albedo;
     }
+}
+
+Scene Scene::moved(const Vec3& way, const core::Scan& scan) const {
+    SceneGeometry geometry = geometry_;
+    for (Object& object : geometry.objects) {
+        for (Vec3& vertex : object.mesh.vertices) vertex += way;
+        object.world_from_node.pretranslate(way);
+        for (NodeGroup& group : object.groups) group.world_from_node.pretranslate(way);
+    }
+    for (Camera& camera : geometry.cameras) camera.position += way;
+    Scene scene(std::move(geometry), scan.path_ends(), wall_albedo_);
+    scene.coincident_faces_ = coincident_faces_;
+    scene.stated_rounding_m_ = stated_rounding_m_;
+    return scene;
 }
 
 const Vec3& Scene::tangent_hint(const Vec3& normal) const {
@@ -134,11 +144,21 @@ Bsdf Scene::bsdf_at(const SurfacePoint& point) const {
     const Facet& facet = facets_[point.facet];
     Bsdf bsdf = bsdfs_[facet.object];
     const Object& object = geometry_.objects[facet.object];
-    if (object.material.albedo_texture) {
-        const Vec2 uv = texture_coordinates(object, facet, point.position);
-        const double factor = object.material.albedo_texture->lookup(uv);
-        std::visit([&](auto& model) { model.albedo *= factor; }, bsdf);
+    if (object.has_one_albedo()) return bsdf;
+    const Vec2 weights = corner_weights(facet, point.position);
+    const auto& [a, b, c] = object.mesh.triangles[facet.triangle];
+    const auto between = [&](const auto& values) {
+        return (1.0 - weights.x() - weights.y()) * values[a] + weights.x() * values[b] +
+               weights.y() * values[c];
+    };
+    double factor = 1.0;
+    if (const Texture* texture = object.material.albedo_texture.get()) {
+        factor = texture->lookup(Vec2(between(object.uv)));
     }
+    if (!object.vertex_albedo.empty()) {
+        factor *= std::clamp(between(object.vertex_albedo), 0.0, 1.0);
+    }
+    std::visit([&](auto& model) { model.albedo *= factor; }, bsdf);
     return bsdf;
 }
 
@@ -158,44 +178,11 @@ Scene make_scene(SceneGeometry geometry,
         SurfaceModel& model = object.material.model;
         if (traits_of(model).gltf == GltfSurface{}) model = model_of({.specular = true});
     }
-    const auto* wall = scan.as<core::WallScan>();
-    const auto in_front = [&](const Object& object) {
-        if (object.role == Role::RelayWall) return false;
-        for (std::size_t i = 0; i < wall->sensing.size(); ++i) {
-            for (const Vec3& vertex : object.mesh.vertices) {
-                if (wall->sensing.normals[i].dot(vertex - wall->sensing.positions[i]) > 0.0) {
-                    return true;
-                }
-            }
-        }
-        return false;
-    };
-    if (wall != nullptr &&
-        std::none_of(geometry.objects.begin(), geometry.objects.end(), in_front)) {
-        throw core::Error(
-            geometry_name(description),
-            "found no hidden surface in front of the relay wall",
-            std::string("must have one on the side that the wall's normal points to") +
-                (is_mesh_file(description.geometry)
-                     ? " (geometry_unit_m and geometry_up place a mesh file)"
-                     : ""));
-    }
+    check_geometry(geometry, description, scan);
     const bool has_wall_mesh = relay_wall_mesh(geometry) != nullptr;
-    if (has_wall_mesh && scan.as<core::SensorScan>() != nullptr) {
-        throw core::Error(geometry_name(description),
-                          "found a mesh with the role relay_wall and a scan of pattern sensor",
-                          "must have none: a sensor looks at the rectangle relay_wall");
-    }
     Scene scene(std::move(geometry), scan, description.relay_wall);
-    if (has_wall_mesh && wall != nullptr) {
-        const ScanSettings& asked = description.scan;
-        if (asked.sensing_points_m.empty()) {
-            require_on_wall_mesh(scene, wall->sensing, "sensing_points");
-        }
-        if (asked.pattern == core::ScanPattern::Exhaustive && asked.illumination_points_m.empty()) {
-            require_on_wall_mesh(scene, wall->illumination, "illumination_points");
-        }
-    }
+    check_scene(scene, description, scan);
+    if (has_wall_mesh) check_wall_mesh(scene, description, scan);
     return scene;
 }
 

@@ -3,6 +3,7 @@
 
 #include "renderer/material/bsdf.h"
 #include "renderer/material/scene_geometry.h"
+#include "renderer/scene/coincident_faces.h"
 #include "renderer/scene/ray_caster.h"
 #include "renderer/scene/scene_file.h"
 
@@ -38,6 +39,8 @@ struct SurfacePoint {
 };
 
 /// Everything that scatters light: facets, materials and the relay wall; and rays against them.
+///
+/// Of surfaces at one place that move together one counts, see coincident_faces.h.
 class Scene {
  public:
     /// geometry     objects in world coordinates
@@ -46,7 +49,14 @@ class Scene {
     ///              images have none, and meshes of that role are hidden surfaces to them
     Scene(SceneGeometry geometry, const core::Scan& scan, const RelayWall& wall);
 
+    /// The same elsewhere.
+    ///
+    /// scan   moved likewise
+    Scene moved(const core::Vec3& way, const core::Scan& scan) const;
+
     const std::vector<Object>& objects() const { return geometry_.objects; }
+    /// Which faces of the geometry are not among those of objects(): they lie on others.
+    const std::vector<CoincidentFaces>& coincident_faces() const { return coincident_faces_; }
     /// What the geometry's file says that is not modelled, for people.
     const std::vector<std::string>& warnings() const { return geometry_.warnings; }
     std::span<const Facet> facets() const { return facets_; }
@@ -64,6 +74,9 @@ class Scene {
 
     const RayCaster& rays() const { return rays_; }
 
+    /// Rounding of the coordinates in which the scene has been stated, wherever it stands now [m].
+    double stated_rounding_m() const { return stated_rounding_m_; }
+
     /// The surface model at a point, textures applied.
     Bsdf bsdf_at(const SurfacePoint& point) const;
 
@@ -78,19 +91,23 @@ class Scene {
                                           const core::Vec3& direction) const;
 
  private:
+    /// The objects are all surfaces, the relay wall among them if it is one.
+    Scene(SceneGeometry geometry, const std::vector<core::Vec3>& path_ends, double wall_albedo);
+
     SceneGeometry geometry_;
+    std::vector<CoincidentFaces> coincident_faces_;
     std::vector<Facet> facets_;
     std::vector<Bsdf> bsdfs_;  ///< per object, untextured
     bool has_relay_wall_ = false;
     double wall_albedo_;
     RayCaster rays_;
+    double stated_rounding_m_;
 };
 
 /// Sets a scene up for the scan of its description.
 ///
 /// geometry   with the description's objects applied
-/// throws   core::Error for a bad file, when all hidden geometry lies behind the scan's points, or
-///          when a grid of points does not lie on the mesh that is the relay wall
+/// throws   core::Error for a bad file and for what check_geometry() and check_scene() refuse
 Scene make_scene(SceneGeometry geometry,
                  const SceneDescription& description,
                  const core::Scan& scan);

@@ -42,9 +42,9 @@ class Clusterer {
             const std::uint32_t object = object_of(*begin);
             const auto end = std::find_if(
                 begin, items_.end(), [&](const Item& item) { return object_of(item) != object; });
-            const Material& material = scene_.object_of(elements_[begin->element].facet).material;
+            const Object& common = scene_.object_of(elements_[begin->element].facet);
             const bool is_uniform =
-                !material.albedo_texture && !element_response(make_bsdf(material))->glossy;
+                common.has_one_albedo() && !element_response(make_bsdf(common.material))->glossy;
             if (is_uniform) {
                 split({begin, end});
             } else {

@@ -107,7 +107,7 @@ SurfaceSubdivider::SurfaceSubdivider(const Scene& scene,
       limits_(limits),
       origin_(scene.rays().origin()),
       returns_light_(CoincidingPoints(scan).any()),
-      boxes_(scan, origin_),
+      boxes_(scan, origin_, scene.stated_rounding_m()),
       visible_sides_(visible_sides(scene.objects(), scan.path_ends())) {}
 
 bool SurfaceSubdivider::is_small_enough(const LegBounds& legs,

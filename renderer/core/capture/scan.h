@@ -92,6 +92,9 @@ class Scan {
     Kind kind_;
 };
 
+/// The same elsewhere: all places of it moved by `way` [m].
+Scan moved(const Scan& scan, const Vec3& way);
+
 /// Throws Error unless what it is of is complete and finite.
 ///
 /// where   prefix of messages

@@ -7,6 +7,7 @@
 #include "renderer/core/mesh_formats/wavefront_lines.h"
 
 #include <algorithm>
+#include <array>
 
 namespace core {
 namespace {
@@ -40,6 +41,38 @@ void warn(FileMaterial& material, const char* text) {
     }
 }
 
+constexpr const char* kEmission = "its emission is not modelled";
+constexpr const char* kRelief = "its bumps are not modelled";
+constexpr const char* kTransparency = "its transparency is not modelled: it is opaque";
+constexpr const char* kHighlight = "its highlight (Ks) is not modelled: it is diffuse";
+constexpr const char* kTexture = "its texture is not modelled; the colour counts alone";
+constexpr const char* kCoat = "its coat or sheen is not modelled";
+constexpr const char* kPart = "its textures of roughness and metal are not modelled";
+
+/// What changes how much light returns and is not modelled: the line's keyword, its words, and
+/// whether a number of the line has to be above 0.
+struct LeftOut {
+    std::string_view keyword;
+    const char* says;
+    bool is_number;
+};
+constexpr std::array kLeftOut{LeftOut{"Ke", kEmission, true},
+                              LeftOut{"Ks", kHighlight, true},
+                              LeftOut{"Tr", kTransparency, true},
+                              LeftOut{"Pc", kCoat, true},
+                              LeftOut{"Ps", kCoat, true},
+                              LeftOut{"map_Kd", kTexture, false},
+                              LeftOut{"map_Ke", kEmission, false},
+                              LeftOut{"map_Ks", kHighlight, false},
+                              LeftOut{"map_d", kTransparency, false},
+                              LeftOut{"map_Pm", kPart, false},
+                              LeftOut{"map_Pr", kPart, false},
+                              LeftOut{"map_Bump", kRelief, false},
+                              LeftOut{"map_bump", kRelief, false},
+                              LeftOut{"bump", kRelief, false},
+                              LeftOut{"disp", kRelief, false},
+                              LeftOut{"norm", kRelief, false}};
+
 void read_line(const std::string& path, const WavefrontLine& line, FileMaterial& material) {
     const auto number = [&] { return colour_of(path, line)[0]; };
     if (line.keyword == "Kd") {
@@ -48,13 +81,13 @@ void read_line(const std::string& path, const WavefrontLine& line, FileMaterial&
         material.metallic = number();
     } else if (line.keyword == "Pr") {
         material.roughness = number();
-    } else if (line.keyword == "map_Kd") {
-        warn(material, "its texture is not modelled; the colour counts alone");
-    } else if (line.keyword == "Ke" && colour_of(path, line) != std::array<double, 3>{}) {
-        warn(material, "its emission is not modelled");
-    } else if ((line.keyword == "d" && number() < 1.0) ||
-               (line.keyword == "Tr" && number() > 0.0)) {
-        warn(material, "its transparency is not modelled: it is opaque");
+    } else if (line.keyword == "d" && number() < 1.0) {
+        warn(material, kTransparency);
+    }
+    const auto* const row = std::ranges::find(kLeftOut, line.keyword, &LeftOut::keyword);
+    if (row == kLeftOut.end()) return;
+    if (!row->is_number || std::ranges::max(colour_of(path, line)) > 0.0) {
+        warn(material, row->says);
     }
 }
 

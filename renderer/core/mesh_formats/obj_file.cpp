@@ -33,8 +33,6 @@ constexpr std::array kSilentKeywords{"vt",
                                      "end",
                                      "c_interp",
                                      "d_interp",
-                                     "usemap",
-                                     "maplib",
                                      "shadow_obj",
                                      "trace_obj"};
 

@@ -38,6 +38,8 @@ constexpr Scalar scalar(const char* name, const char* other) {
     return {name, other, sizeof(T), &read_as<T>};
 }
 
+constexpr const char* kFaceColoursNotModelled = "the colours of its faces are not modelled";
+
 constexpr std::array kScalars{scalar<std::int8_t>("char", "int8"),
                               scalar<std::uint8_t>("uchar", "uint8"),
                               scalar<std::int16_t>("short", "int16"),
@@ -272,6 +274,7 @@ FileMesh parse_ply(const std::string& path, std::string_view text) {
         if (element.name == "vertex") {
             read_vertices(path, element, body, file);
         } else if (element.name == "face" || element.name == "tristrips") {
+            if (element.has("red")) file.warnings.emplace_back(kFaceColoursNotModelled);
             read_faces(path, element, body, polygons);
         } else {
             read_items(path, element, body, [](std::size_t, std::span<const double>) {});

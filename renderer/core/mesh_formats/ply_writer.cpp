@@ -3,7 +3,9 @@
 
 #include "renderer/core/error.h"
 #include "renderer/core/output_file.h"
+#include "renderer/core/precision.h"
 
+#include <algorithm>
 #include <bit>
 #include <fstream>
 #include <span>
@@ -21,7 +23,10 @@ void write_body(const std::string& path,
     std::ofstream file(output.temporary(), std::ios::binary);
     file << "ply\nformat binary_little_endian 1.0\ncomment metres\n";
     file << "element vertex " << positions.size() << "\n";
-    for (const char* name : {"x", "y", "z"}) file << "property float " << name << "\n";
+    const bool is_far = std::ranges::any_of(positions, needs_double);
+    for (const char* name : {"x", "y", "z"}) {
+        file << "property " << (is_far ? "double " : "float ") << name << "\n";
+    }
     for (const char* name : {"nx", "ny", "nz"}) {
         if (!normals.empty()) file << "property float " << name << "\n";
     }
@@ -35,7 +40,11 @@ void write_body(const std::string& path,
         file.write(reinterpret_cast<const char*>(single.data()), sizeof(single));
     };
     for (std::size_t i = 0; i < positions.size(); ++i) {
-        write_vector(positions[i]);
+        if (is_far) {
+            file.write(reinterpret_cast<const char*>(positions[i].data()), sizeof(positions[i]));
+        } else {
+            write_vector(positions[i]);
+        }
         if (!normals.empty()) write_vector(normals[i]);
     }
     for (const auto& triangle : triangles) {

@@ -35,7 +35,7 @@ std::size_t stated_triangles(std::string_view text) {
 
 FileMesh parse_binary(std::string_view text) {
     FileMesh file;
-    bool has_colours = false;
+    bool has_colours = text.substr(0, kHeaderBytes).find("COLOR=") != text.npos;
     for (std::size_t at = kBodyBegin; at < text.size(); at += kTriangleBytes) {
         for (std::size_t c = 1; c <= 3; ++c) {
             const auto corner = stored<std::array<float, 3>>(text, at + c * kNormalBytes);

@@ -73,7 +73,8 @@ struct GltfFile {
     int add_accessor(const std::vector<T>& values,
                      ComponentType component_type,
                      const std::string& type) {
-        const std::size_t width = type == "SCALAR" ? 1 : static_cast<std::size_t>(type[3] - '0');
+        const auto side = static_cast<std::size_t>(type[3] - '0');
+        const std::size_t width = type == "SCALAR" ? 1 : type[0] == 'M' ? side * side : side;
         const int view = add_view(values);
         json["accessors"].push_back({{"bufferView", view},
                                      {"componentType", static_cast<int>(component_type)},

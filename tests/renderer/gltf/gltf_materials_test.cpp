@@ -35,9 +35,9 @@ TEST(Gltf, MaterialsDecideAlbedoAndModel) {
     EXPECT_EQ(file.load().objects[0].material.model, renderer::model_of({.metallic = true}));
     EXPECT_EQ(file.load().objects[0].material.roughness, 0.3);
 
-    EXPECT_EQ(
-        file.load().warnings,
-        std::vector<std::string>{"material paint: a metallicFactor of 0.5 is taken as metal"});
+    EXPECT_EQ(file.load().warnings,
+              std::vector<std::string>{
+                  "material paint: a metallicFactor between 0 and 1 is taken as metal"});
 
     file.json["materials"][0] = Json::object();
     ASSERT_EQ(file.load().warnings.size(), 1U);
