@@ -124,8 +124,7 @@ std::optional<Volume> measured_again(const core::Capture& capture,
 
 /// Leaves out surfaces at places that the scan tells from no other across the volume's width:
 /// confident as they look, they may be anywhere on a shell.
-void leave_out_untold(const PreparedCapture& prepared,
-                      Surface& surface) {
+void leave_out_untold(const PreparedCapture& prepared, Surface& surface) {
     const PlaceResolution resolution(prepared.scan, prepared.time_axis.bin_width_m);
     const WallFrame& wall = prepared.wall;
     core::DepthMap& depth = surface.depth;

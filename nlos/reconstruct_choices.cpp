@@ -110,7 +110,8 @@ void leave_out_background(const PreparedCapture& prepared,
     auto signal = find_signal(prepared.transient(), prepared.observed, prepared.unit);
     if (settings.ambient == Ambient::Auto) {
         const bool is_counts = prepared.unit == core::TransientUnit::Counts;
-        const bool has_any = is_counts || settings.noise_floor || (signal && signal->has_background);
+        const bool has_any =
+            is_counts || settings.noise_floor || (signal && signal->has_background);
         settings.ambient = has_any ? Ambient::Subtract : Ambient::Keep;
         if (!has_any) return;
     }
@@ -124,32 +125,6 @@ void leave_out_background(const PreparedCapture& prepared,
     if (settings.noise_floor) {
         plan.ambient_per_bin.assign(prepared.scan.num_pairs(), *settings.noise_floor);
     }
-}
-
-/// How many bins before and behind light a response may have taken it from.
-int response_reach(const ReconstructSettings& settings, const core::TimeAxis& axis) {
-    const core::ResponseFilter filter = response_filter(settings, axis);
-    return filter.weights.empty()
-               ? 0
-               : std::abs(filter.first_delay) + static_cast<int>(filter.weights.size());
-}
-
-/// Drops bins at both ends that hold nothing in any histogram: transforms then have the same
-/// period and bins, however many there are. Before a gate nobody looked: there the axis stays.
-void leave_out_dark_ends(const PreparedCapture& prepared,
-                         const ReconstructSettings& settings,
-                         PreparationPlan& plan) {
-    const int reach = response_reach(settings, prepared.time_axis);
-    core::BinRange filled = filled_bins(prepared.transient());
-    if (filled.size() == 0) return;
-    filled = {std::max(0, filled.begin - reach), filled.end + reach};
-    const int merge = plan.merge_bins;
-    const int end = plan.num_bins * merge;
-    const int latest = std::max(0, end - std::min(kMinBins, plan.num_bins) * merge);
-    if (prepared.unobserved_before_m == 0.0) plan.first_bin = std::min(filled.begin, latest);
-    const int whole = (end - plan.first_bin) / merge;
-    const int filled_to = (std::min(filled.end, end) - plan.first_bin + merge - 1) / merge;
-    plan.num_bins = std::clamp(filled_to, std::min(kMinBins, whole), whole);
 }
 
 /// Fills in merge_bins, ambient, z_range_m and, where a method has it, snr, and says what becomes
@@ -171,7 +146,6 @@ PreparationPlan choose_preparation(const PreparedCapture& prepared, ReconstructS
     if (!settings.volume.z_range_m) {
         settings.volume.z_range_m = default_z_range(prepared.scan, plan.prepared_axis(axis));
     }
-    leave_out_dark_ends(prepared, settings, plan);
     const MethodTraits& method = traits_of(settings);
     if (!method.explains_response && core::is_stated(settings.response)) {
         plan.deconvolution =

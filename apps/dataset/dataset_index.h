@@ -21,8 +21,8 @@ struct DatasetIndex {
     std::vector<std::string> doubts;    ///< what else a user should know
 };
 
-/// Which items are looked for: all of the recipe, those that runs were asked for (all where no shard
-/// is there), or some.
+/// Which items are looked for: all of the recipe, those that runs were asked for (all where no
+/// shard is there), or some.
 struct AllItems {};
 struct AskedItems {};
 using WantedItems = std::variant<AllItems, AskedItems, ItemRange>;

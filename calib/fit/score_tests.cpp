@@ -45,7 +45,8 @@ double fall_along(const SceneModel& model,
                   const SceneState& state,
                   const Eigen::VectorXd& step) {
     const auto deviance = [&](double share) {
-        stage.objective->evaluate(moved_by(model, state, share * step), renderer::Gradients::Without);
+        stage.objective->evaluate(moved_by(model, state, share * step),
+                                  renderer::Gradients::Without);
         return stage.objective->sum_of_squares();
     };
     const double here = deviance(0.0);
@@ -59,7 +60,7 @@ double fall_along(const SceneModel& model,
 void warn_of_misfits(const FitDriver& driver, const SceneState& state, FitResult& result) {
     FitSettings settings = driver.settings;
     settings.free = with_all_freedoms(driver);
-    const SceneModel model(driver.input.geometry, settings);
+    const SceneModel model(driver.geometry, settings);
     const FitDriver::Stage stage = driver.make_stage(model, 0.0);
     stage.model->refresh(state);
     stage.objective->evaluate(state, renderer::Gradients::With);

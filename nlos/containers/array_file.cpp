@@ -20,7 +20,6 @@ Container csv_container();
 
 const std::vector<Container>& containers() {
     static const std::vector<Container> all{lfs_pointer_refusal(),
-                                            gzip_container(),
                                             hdf5_container(),
                                             mat5_container(),
                                             npy_container(),
@@ -28,7 +27,8 @@ const std::vector<Container>& containers() {
                                             ti_container(),
                                             mat4_refusal(),
                                             json_container(),
-                                            csv_container()};
+                                            csv_container(),
+                                            gzip_container()};
     return all;
 }
 

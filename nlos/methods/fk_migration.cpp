@@ -52,9 +52,7 @@ double windowed_derivative(double frequency) {
 FkGrids make_grids(const MethodInput& input) {
     const core::TimeAxis& axis = input.time_axis;
     const auto [shortest, longest] = core::device_leg_range_m(input.scan);
-    // No depth of the volume may meet a copy of the light one period away.
-    const double first_light = std::max(0.0, 0.5 * (axis.opl_start_m - longest));
-    const double begin = std::min(first_light, input.z_range_m[0]);
+    const double begin = std::max(0.0, 0.5 * (axis.opl_start_m - longest));
     const double end = std::max(begin + axis.bin_width_m, 0.5 * (axis.opl_end_m() - shortest));
     FkGrids grids;
     grids.nx = input.wall.grid->size[0];

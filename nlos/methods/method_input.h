@@ -20,7 +20,7 @@ namespace nlos {
 
 /// What histograms hold beside the light of the scene, for methods that explain it.
 struct Measurement {
-    bool is_counts = false;  ///< photons, of which none were taken off
+    bool is_counts = false;                  ///< photons, of which none were taken off
     std::vector<double> background_per_bin;  ///< per pair; empty: none
     core::ResponseFilter response;           ///< on the histograms' bins; no weights: none
 

@@ -101,8 +101,8 @@ class FaultFinder {
             own.sum += light;
             own.peak = std::max(own.peak, light);
             if (light > 0.0) {
-                own.far_peak = std::max(
-                    own.far_peak, light * std::pow(range_m(pair, bin), kFalloffPower));
+                own.far_peak =
+                    std::max(own.far_peak, light * std::pow(range_m(pair, bin), kFalloffPower));
             }
             own.is_zero = own.is_zero && value == 0.0F;
             ++bin;
@@ -129,10 +129,9 @@ class FaultFinder {
             }
         }
         if (near.size() > kNeighbours) {
-            std::ranges::nth_element(near,
-                                     near.begin() + kNeighbours,
-                                     {},
-                                     [&](std::size_t other) { return distance_m(pair, other); });
+            std::ranges::nth_element(near, near.begin() + kNeighbours, {}, [&](std::size_t other) {
+                return distance_m(pair, other);
+            });
             near.resize(kNeighbours);
         }
         return near;
@@ -149,10 +148,10 @@ class FaultFinder {
         const double legs = scan_.device_legs_m(other) - scan_.device_legs_m(pair);
         const double step = (scan_.is_confocal() ? 2.0 : 1.0) * distance;
         const double per_bin = 1.0 / capture_.time_axis.bin_width_m;
-        const core::BinRange near = core::intersection(
-            {bin - 1 + static_cast<int>(std::floor((legs - step) * per_bin)),
-             bin + 2 + static_cast<int>(std::ceil((legs + step) * per_bin))},
-            {0, capture_.time_axis.num_bins});
+        const core::BinRange near =
+            core::intersection({bin - 1 + static_cast<int>(std::floor((legs - step) * per_bin)),
+                                bin + 2 + static_cast<int>(std::ceil((legs + step) * per_bin))},
+                               {0, capture_.time_axis.num_bins});
         if (core::intersection(near, capture_.observed_range(other)) != near) {
             return std::numeric_limits<double>::infinity();
         }
@@ -174,6 +173,7 @@ class FaultFinder {
             peak = std::max(peak, light_[other].peak);
             far_peak = std::max(far_peak, light_[other].far_peak);
         }
+        if (!(peak > 0.0)) return {};  // nothing to be held against
         const core::BinRange seen = capture_.observed_range(pair);
         const auto histogram = capture_.transient.histogram(pair);
         const bool is_counts = capture_.unit == core::TransientUnit::Counts;
@@ -202,14 +202,18 @@ class FaultFinder {
         for (const std::size_t other : near) {
             if (light_[other].sum > 0.0) sums.push_back(light_[other].sum);
         }
-        if (sums.empty() || static_cast<double>(sums.size()) <
-                                kLitNeighbours * static_cast<double>(near.size())) {
+        if (sums.empty() ||
+            static_cast<double>(sums.size()) < kLitNeighbours * static_cast<double>(near.size())) {
             return false;
         }
+        // Where light fades towards a shadow or the end of the axis, the next pair may well be
+        // dark.
+        constexpr double kEven = 0.3;
+        const auto [least, most] = std::ranges::minmax(sums);
+        if (least < kEven * most) return false;
         // As many photons as leave any of the pairs dark once in a thousand captures.
-        const double expected = *std::ranges::min_element(sums);
         return capture_.unit != core::TransientUnit::Counts ||
-               expected > std::log(1e3 * static_cast<double>(light_.size()));
+               least > std::log(1e3 * static_cast<double>(light_.size()));
     }
 
     const core::Capture& capture_;
@@ -222,7 +226,8 @@ class FaultFinder {
 void find_negative(const core::Capture& capture, CaptureFaults& faults) {
     if (capture.unit != core::TransientUnit::Counts) return;
     const auto values = capture.transient.values();
-    const auto most = static_cast<std::size_t>(kMostNegativeShare * static_cast<double>(values.size()));
+    const auto most =
+        static_cast<std::size_t>(kMostNegativeShare * static_cast<double>(values.size()));
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (!(values[i] < 0.0F)) continue;
         faults.negative_bins.emplace_back(i / capture.transient.num_bins(),
@@ -302,9 +307,10 @@ std::optional<std::string> describe(const CaptureFaults& faults) {
     append_items(faults.dead_points, "dead point", point_name, text);
     append_items(faults.hot_bins, "hot bin", bin_name, text);
     append_items(faults.negative_bins, "negative bin", bin_name, text);
-    return fmt::format("left out, as no light explains them: {}; capture.mask_points and "
-                       "capture.mask_bins leave out others",
-                       text);
+    return fmt::format(
+        "left out, as no light explains them: {}; capture.mask_points and "
+        "capture.mask_bins leave out others",
+        text);
 }
 
 }  // namespace nlos

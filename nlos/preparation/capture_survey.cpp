@@ -105,8 +105,9 @@ std::optional<std::string> volume_warning(const PreparedCapture& prepared,
         if (bin < 1.0) return 0.0;
         return light[static_cast<std::size_t>(std::min(bin, 1.0 * axis.num_bins)) - 1];
     };
-    const double own = light_before(2.0 * farthest_m + longest_leg + prepared.time_axis.bin_width_m) -
-                       light_before(2.0 * z_range_m[0] + shortest_leg);
+    const double own =
+        light_before(2.0 * farthest_m + longest_leg + prepared.time_axis.bin_width_m) -
+        light_before(2.0 * z_range_m[0] + shortest_leg);
     if (own >= kLeastShare * *std::ranges::max_element(light)) return std::nullopt;
     const auto [begin, end] = light_range_m(prepared, light);
     return fmt::format(

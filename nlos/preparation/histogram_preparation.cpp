@@ -73,7 +73,7 @@ Segments make_segments(const core::Transient& transient, const core::ObservedBin
     core::BinRange range = core::observed_hull(observed, static_cast<int>(transient.num_bins()));
     if (!observed) {
         const core::BinRange filled = filled_bins(transient);
-        range.begin = filled.begin;
+        range.begin = filled.size() > 0 ? filled.begin : range.end;
         if (filled.end < range.end && ends_at_once(transient, filled)) range.end = filled.end;
     }
     return {range.begin, range.size() / static_cast<int>(kSegments)};
@@ -118,12 +118,13 @@ class SegmentedTransient {
     }
     std::size_t num_dark() const { return std::max<std::size_t>(1, num_seen() / kDarkShare); }
 
-    /// Whether the darkest segments hold as much as each other, and not nothing.
+    /// Whether the darkest segments hold as much as each other, not nothing, and less than others.
     bool is_dark_constant() const {
         const std::size_t brightest = darkest_first_[num_dark() - 1];
         const double least = sum(darkest_first_[0]);
-        return least > 0.0 && sum(brightest) - least < kConstant * sum(brightest) +
-                                                           kSignificance * deviation(brightest);
+        const double tolerance = kConstant * sum(brightest) + kSignificance * deviation(brightest);
+        return least > 0.0 && sum(brightest) - least < tolerance &&
+               strongest() - sum(brightest) > tolerance;
     }
 
  private:
@@ -163,17 +164,21 @@ class SegmentedTransient {
 
 }  // namespace
 
-core::BinRange filled_bins(const core::Transient& transient) {
-    const auto is_filled = [](float value) { return value != 0.0F; };
+core::BinRange filled_bins(const core::Transient& transient,
+                           const std::vector<double>& ambient_per_bin) {
     std::size_t begin = transient.num_bins();
     std::size_t end = 0;
     for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
+        const double ambient = ambient_per_bin.empty() ? 0.0 : ambient_per_bin[pair];
+        const auto is_filled = [&](float value) {
+            return value != 0.0F && static_cast<double>(value) != ambient;
+        };
         const auto histogram = transient.histogram(pair);
         const auto before = histogram.first(begin);
         begin = static_cast<std::size_t>(std::ranges::find_if(before, is_filled) - before.begin());
         const auto behind = histogram.subspan(end);
-        end += static_cast<std::size_t>(std::find_if(behind.rbegin(), behind.rend(), is_filled).base() -
-                                        behind.begin());
+        end += static_cast<std::size_t>(
+            std::find_if(behind.rbegin(), behind.rend(), is_filled).base() - behind.begin());
     }
     return begin < end ? core::BinRange{static_cast<int>(begin), static_cast<int>(end)}
                        : core::BinRange{};
@@ -267,7 +272,7 @@ core::Transient prepare_histograms(const core::Transient& transient, const Prepa
         }
         const core::BinRange range = plan.prepared_range(pair);
         for (int bin = range.begin; bin < range.end; ++bin) {
-            const auto from = signal.begin() + plan.first_bin + bin * merge;
+            const auto from = signal.begin() + bin * merge;
             output[static_cast<std::size_t>(bin)] =
                 static_cast<float>(std::accumulate(from, from + merge, 0.0));
         }

@@ -7,7 +7,6 @@
 #include "renderer/core/capture/time_axis.h"
 #include "renderer/core/capture/transient.h"
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
@@ -22,8 +21,10 @@ struct SignalExtent {
     bool has_background = false;          ///< it is there, and the same in all of its segments
 };
 
-/// The bins from the first to the last that is not 0 in every histogram; none in the dark.
-core::BinRange filled_bins(const core::Transient& transient);
+/// The bins from the first to the last that is not empty in every histogram: neither 0 nor just the
+/// background; none in the dark.
+core::BinRange filled_bins(const core::Transient& transient,
+                           const std::vector<double>& ambient_per_bin = {});
 
 /// Finds constant background light and the end of the signal.
 ///
@@ -86,25 +87,21 @@ struct PreparationPlan {
     /// Of histograms of the capture's length, null: none.
     std::shared_ptr<const ResponseDeconvolution> deconvolution = nullptr;
     core::ObservedBins observed = std::nullopt;  ///< before merging
-    int first_bin = 0;                           ///< before merging; earlier bins are dropped
 
     /// The bins of a prepared histogram that were observed, each of them as a whole.
     core::BinRange prepared_range(std::size_t pair) const {
         if (!observed) return {0, num_bins};
-        const core::BinRange& seen = (*observed)[pair];
-        const core::BinRange left{std::max(0, seen.begin - first_bin),
-                                  std::max(0, seen.end - first_bin)};
-        return core::intersection(core::merged(left, merge_bins), {0, num_bins});
+        return core::intersection(core::merged((*observed)[pair], merge_bins), {0, num_bins});
     }
 
     /// The axis of prepared histograms.
     core::TimeAxis prepared_axis(const core::TimeAxis& axis) const {
-        return {axis.bin_begin_m(first_bin), merge_bins * axis.bin_width_m, num_bins};
+        return {axis.opl_start_m, merge_bins * axis.bin_width_m, num_bins};
     }
 };
 
 /// Takes off ambient light, then the set-up's response, adds up neighbouring bins and drops those
-/// before the plan's start and behind its end. Bins zeroed at the start of a histogram stay 0, as do those not observed;
+/// behind the plan's end. Bins zeroed at the start of a histogram stay 0, as do those not observed;
 /// what was observed of a bin that was not as a whole is dropped.
 core::Transient prepare_histograms(const core::Transient& transient, const PreparationPlan& plan);
 

@@ -18,16 +18,17 @@ namespace {
 /// Half the path length, device legs taken off, that half of all light comes before.
 std::optional<double> middle_range_m(const PreparedCapture& prepared) {
     const auto signal = find_signal(prepared.transient(), prepared.observed, prepared.unit);
-    std::vector<double> light = light_per_bin(prepared.transient(),
-                                              prepared.observed ? &*prepared.observed : nullptr,
-                                              signal ? signal->ambient_per_bin
-                                                     : std::vector<double>());
+    std::vector<double> light =
+        light_per_bin(prepared.transient(),
+                      prepared.observed ? &*prepared.observed : nullptr,
+                      signal ? signal->ambient_per_bin : std::vector<double>());
     std::partial_sum(light.begin(), light.end(), light.begin());
     const double all = light.empty() ? 0.0 : *std::ranges::max_element(light);
     if (!(all > 0.0)) return std::nullopt;
     const auto found = std::ranges::find_if(light, [&](double sum) { return sum >= 0.5 * all; });
     const auto [shortest, longest] = core::device_leg_range_m(prepared.scan);
-    const double length = prepared.time_axis.bin_center_m(static_cast<double>(found - light.begin()));
+    const double length =
+        prepared.time_axis.bin_center_m(static_cast<double>(found - light.begin()));
     return 0.5 * (length - 0.5 * (shortest + longest));
 }
 
@@ -56,8 +57,9 @@ double PlaceResolution::at(const core::Vec3& place) const {
 std::optional<std::string> why_no_directions(const PreparedCapture& prepared) {
     const std::optional<double> range_m = middle_range_m(prepared);
     if (!range_m || !(*range_m > 0.0)) return std::nullopt;
-    const double resolution_m = PlaceResolution(prepared.scan, prepared.time_axis.bin_width_m)
-                                    .at(prepared.wall.world_from_wall * core::Vec3(0.0, 0.0, *range_m));
+    const double resolution_m =
+        PlaceResolution(prepared.scan, prepared.time_axis.bin_width_m)
+            .at(prepared.wall.world_from_wall * core::Vec3(0.0, 0.0, *range_m));
     const WallFrame& wall = prepared.wall;
     const double width_m = wall.max_m[0] - wall.min_m[0];
     const double height_m = wall.max_m[1] - wall.min_m[1];

@@ -26,8 +26,9 @@ struct PreparedCapture {
 };
 
 /// The part of a capture that `crop` leaves, without bins that no pair observed at either end of
-/// the axis, on grids where its points fill some, see sort_into_grids(). A scan of many illumination points and one sensing
-/// point becomes the single-laser scan that it equals by reciprocity.
+/// the axis, on grids where its points fill some, see sort_into_grids(). A scan of many
+/// illumination points and one sensing point becomes the single-laser scan that it equals by
+/// reciprocity.
 ///
 /// capture   must outlive the result
 /// throws    core::Error when nothing is left or observed; core::Failure when memory does not

@@ -34,13 +34,12 @@ constexpr FactorStory kFactorStories[] = {
     {1e12 / core::kSpeedOfLight, "as if metres had been taken for ps"}};
 
 /// The same of the wall's extents.
-constexpr FactorStory kWallStories[] = {
-    {2.0, "as if half its width had been taken for the width"},
-    {0.5, "as if the width had been taken for half of it"},
-    {1e-3, "as if mm had been taken for metres"},
-    {1e-2, "as if cm had been taken for metres"},
-    {0.0254, "as if inches had been taken for metres"},
-    {1e3, "as if km had been taken for metres"}};
+constexpr FactorStory kWallStories[] = {{2.0, "as if half its width had been taken for the width"},
+                                        {0.5, "as if the width had been taken for half of it"},
+                                        {1e-3, "as if mm had been taken for metres"},
+                                        {1e-2, "as if cm had been taken for metres"},
+                                        {0.0254, "as if inches had been taken for metres"},
+                                        {1e3, "as if km had been taken for metres"}};
 
 /// What happened, after a comma; nothing where no story has the factor.
 template <std::size_t kCount>

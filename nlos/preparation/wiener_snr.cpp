@@ -39,11 +39,10 @@ double wiener_snr(const core::WallScan& scan,
         Powers powers;
         const core::BinRange observed = plan.prepared_range(pair);
         for (int bin = observed.begin; bin < observed.end; ++bin) {
-            const int first = plan.first_bin + bin * merge;
-            const double range = 0.5 * (axis.bin_begin_m(first + 0.5 * merge) - legs_m);
+            const double range = 0.5 * (axis.bin_begin_m((bin + 0.5) * merge) - legs_m);
             if (range <= 0.0) continue;
             double count = 0.0;
-            for (int i = first; i < first + merge; ++i) {
+            for (int i = bin * merge; i < (bin + 1) * merge; ++i) {
                 count += static_cast<double>(histogram[static_cast<std::size_t>(i)]);
             }
             const double signal = count - ambient * merge;

@@ -65,7 +65,8 @@ Volume solve_confocal(const MethodInput& input, const ReconstructSettings& setti
     const ConservativeResampling to_depth = squared_range_to_depth(input, cone, BinSpread::Linear);
     const std::size_t num_z = input.axes.z_m.size();
     const ConeKernel kernel(cone, *input.wall.grid);
-    const double voxel_depth_m = (input.z_range_m[1] - input.z_range_m[0]) / static_cast<double>(num_z);
+    const double voxel_depth_m =
+        (input.z_range_m[1] - input.z_range_m[0]) / static_cast<double>(num_z);
     const double unit = data.unit / std::sqrt(kernel.squared_norm()) *
                         albedo_density_of_light(input) * voxel_depth_m;  // to_depth divides by it
     std::vector<float> units;  // per bin of v; cosines leave z^4 to the albedo

@@ -13,8 +13,8 @@ namespace renderer {
 /// Facets of one object that lie in one plane and touch along edges, as one flat piece.
 ///
 /// Coplanar means that corners lie within 1e-10 of the object's size, and of a metre, of the plane
-/// of the patch's largest facet, or as near as the coordinates' rounding allows; with less care path
-/// lengths on the patch would not be exact.
+/// of the patch's largest facet, or as near as the coordinates' rounding allows; with less care
+/// path lengths on the patch would not be exact.
 class PlanarPatches {
  public:
     /// scene   must outlive the patches

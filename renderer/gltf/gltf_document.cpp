@@ -146,6 +146,27 @@ Callbacks file_callbacks(std::uint64_t& largest) {
     return callbacks;
 }
 
+void append_word(std::string& bytes, std::size_t word) {
+    for (int i = 0; i < 4; ++i) bytes += static_cast<char>(word >> (8 * i) & 0xff);
+}
+
+/// A file without its skins: tinygltf 2.7 refuses those without inverse bind matrices, which are
+/// optional, and poses are read from the JSON.
+std::string without_skins(std::string_view bytes, core::Json json) {
+    json.erase("skins");
+    std::string text = json.dump();
+    if (!is_binary_gltf(bytes)) return text;
+    text.append((4 - text.size() % 4) % 4, ' ');
+    const std::size_t rest =
+        kHeaderBytes + kChunkHeaderBytes + little_endian_word(bytes, kHeaderBytes);
+    std::string file(bytes.substr(0, 8));
+    append_word(file, kHeaderBytes + kChunkHeaderBytes + text.size() + (bytes.size() - rest));
+    append_word(file, text.size());
+    file += "JSON" + text;
+    file += bytes.substr(rest);
+    return file;
+}
+
 std::shared_ptr<const tinygltf::Model> load_model(std::string_view bytes,
                                                   const core::Json& json,
                                                   const std::string& path) {
@@ -197,7 +218,9 @@ GltfDocument read_gltf_document(const std::string& path) {
         core::parse_json(is_binary_gltf(bytes) ? find_json_chunk(bytes, path) : bytes, path);
     check_gltf_json(document.json, path);
     note_features(GltfPart::File, document.json, document.json, "", path, document.warnings);
-    document.model = load_model(bytes, document.json, path);
+    document.model = document.json.contains("skins")
+                         ? load_model(without_skins(bytes, document.json), document.json, path)
+                         : load_model(bytes, document.json, path);
     return document;
 }
 

@@ -180,6 +180,7 @@ Scene make_scene(SceneGeometry geometry,
     }
     check_geometry(geometry, description, scan);
     const bool has_wall_mesh = relay_wall_mesh(geometry) != nullptr;
+    if (!has_wall_mesh) warn_of_placement(description, scan, geometry);
     Scene scene(std::move(geometry), scan, description.relay_wall);
     check_scene(scene, description, scan);
     if (has_wall_mesh) check_wall_mesh(scene, description, scan);

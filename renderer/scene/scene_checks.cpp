@@ -7,6 +7,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
 
 namespace renderer {
 namespace {
@@ -82,7 +85,7 @@ void require_distance(const Scene& scene, const core::WallPoints& points) {
             if (!is_near || !is_before) return;
             throw core::Error(
                 "object " + scene.object_of(facets[found]).name,
-                fmt::format("found {:.3g} m in front of the wall point ({}) m",
+                fmt::format("found {:.3g} m in front of the wall point {} m",
                             way.norm(),
                             core::vector_text(point)),
                 fmt::format("must keep {:.2g} m from lit and sensed points, {:g} of the scene's "
@@ -112,7 +115,76 @@ void require_on_wall_mesh(const Scene& scene,
     }
 }
 
+// Where a point lies off the rectangle of the relay wall, in words; nothing on it.
+std::optional<std::string> place_off_wall(const core::RelayWall& wall, const Vec3& point) {
+    constexpr double kTolerance = 0.02;  // of the wall's size: points are measured, too
+    const double size_m = std::hypot(wall.size_m[0], wall.size_m[1]);
+    const Vec3 local = wall.world_from_wall().inverse(Eigen::Isometry) * point;
+    if (std::abs(local.z()) > kTolerance * size_m) {
+        return fmt::format("{:.3g} m {} the relay wall",
+                           std::abs(local.z()),
+                           local.z() < 0.0 ? "behind" : "in front of");
+    }
+    const double beside_m = std::max(std::abs(local.x()) - 0.5 * wall.size_m[0],
+                                     std::abs(local.y()) - 0.5 * wall.size_m[1]);
+    if (beside_m <= kTolerance * size_m) return std::nullopt;
+    return fmt::format("{:.3g} m beside the relay wall", beside_m);
+}
+
+void warn_of_points_off_wall(const core::RelayWall& wall,
+                             const core::WallPoints& points,
+                             const std::string& key,
+                             std::vector<std::string>& warnings) {
+    for (const Vec3& point : points.positions) {
+        const auto place = place_off_wall(wall, point);
+        if (!place) continue;
+        warnings.push_back(fmt::format("the point {} m lies {}; {} or relay_wall places it",
+                                       core::vector_text(point),
+                                       *place,
+                                       key));
+        return;
+    }
+}
+
+// A mesh around its own origin is the commonest: it has to be moved in front of the wall.
+void warn_of_objects_behind_wall(const core::RelayWall& wall,
+                                 const std::vector<Object>& objects,
+                                 std::vector<std::string>& warnings) {
+    constexpr double kNotable = 0.1;  // of an object's extent in depth
+    const core::Transform wall_from_world = wall.world_from_wall().inverse(Eigen::Isometry);
+    for (const Object& object : objects) {
+        double low_m = std::numeric_limits<double>::infinity();
+        double high_m = -low_m;
+        for (const Vec3& vertex : object.mesh.vertices) {
+            const double depth_m = (wall_from_world * vertex).z();
+            low_m = std::min(low_m, depth_m);
+            high_m = std::max(high_m, depth_m);
+        }
+        if (!(high_m > 0.0) || -low_m < kNotable * (high_m - low_m)) continue;
+        warnings.push_back(fmt::format(
+            "object {} reaches from {:.3g} m behind the relay wall to {:.3g} m in front of "
+            "it, and only what is in front counts; relay_wall.center_m moves the wall",
+            object.name,
+            -low_m,
+            high_m));
+    }
+}
+
 }  // namespace
+
+void warn_of_placement(const SceneDescription& description,
+                       const core::Scan& scan,
+                       SceneGeometry& geometry) {
+    const auto* points = scan.as<core::WallScan>();
+    if (points == nullptr) return;
+    const core::RelayWall& wall = description.relay_wall;
+    warn_of_points_off_wall(wall, points->sensing, "scan.sensing_points_m", geometry.warnings);
+    if (!points->is_confocal()) {
+        warn_of_points_off_wall(
+            wall, points->illumination, "scan.illumination_m", geometry.warnings);
+    }
+    warn_of_objects_behind_wall(wall, geometry.objects, geometry.warnings);
+}
 
 void check_geometry(const SceneGeometry& geometry,
                     const SceneDescription& description,

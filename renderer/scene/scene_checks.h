@@ -11,6 +11,12 @@ void check_geometry(const SceneGeometry& geometry,
                     const SceneDescription& description,
                     const core::Scan& scan);
 
+/// Adds warnings of wall points off the rectangle of the relay wall, and of objects that reach
+/// behind it. For geometry that brings no mesh of the wall itself.
+void warn_of_placement(const SceneDescription& description,
+                       const core::Scan& scan,
+                       SceneGeometry& geometry);
+
 /// Throws core::Error when no hidden surface is left of the geometry, or one lies so near in front
 /// of a wall point that methods disagree about its light.
 void check_scene(const Scene& scene, const SceneDescription& description, const core::Scan& scan);

@@ -67,7 +67,7 @@ TEST_F(CommandLine, ResponsesOfCapturesAreOffered) {
             .status,
         0);
     // Every method takes what the file states, unless it is told otherwise.
-    for (const std::string& method : {"auto", "lct", "bp"}) {
+    for (const std::string method : {"auto", "lct", "bp"}) {
         const Outcome used =
             run("reconstruct " + counts + " --method " + method + " -o " + file("v.h5"));
         EXPECT_EQ(used.status, 0) << used.err;

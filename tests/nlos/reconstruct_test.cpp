@@ -30,6 +30,21 @@ core::Capture example() {
     return capture;
 }
 
+/// A list of wall points that fill no grid.
+core::Capture example_list() {
+    core::Capture capture = example();
+    core::WallScan& scan = capture.scan.wall();
+    for (core::WallPoints* points : {&scan.sensing, &scan.illumination}) {
+        points->grid.reset();
+        points->positions.pop_back();
+        points->normals.pop_back();
+    }
+    core::Transient fewer(scan.num_pairs(), capture.time_axis.num_bins);
+    std::copy_n(capture.transient.values().begin(), fewer.values().size(), fewer.values().begin());
+    capture.transient = std::move(fewer);
+    return capture;
+}
+
 ReconstructSettings with(const std::vector<std::string>& overrides) {
     ReconstructSettings settings;
     for (const std::string& text : overrides) core::apply_override(settings, text);
@@ -72,9 +87,7 @@ TEST(Reconstruct, AutoTakesThePhasorFieldForOtherScansAndSaysWhy) {
     EXPECT_EQ(single.method, "phasor");
     EXPECT_NE(single.reason.find("single-laser scan"), std::string::npos);
     EXPECT_NEAR(*single.settings.phasor.wavelength_m, 0.2, 1e-9);
-    core::Capture list = example();
-    list.scan.wall().sensing.grid.reset();
-    const Reconstruction listed = reconstruct(list, with({"volume.voxels=[4,4,8]"}), {});
+    const Reconstruction listed = reconstruct(example_list(), with({"volume.voxels=[4,4,8]"}), {});
     EXPECT_EQ(listed.method, "phasor");
     EXPECT_NE(listed.reason.find("list of wall points"), std::string::npos);
 }
@@ -89,8 +102,7 @@ TEST(Reconstruct, AutoFallsBackToBackprojectionAndSaysWhy) {
 }
 
 TEST(Reconstruct, RefusalsNameTheMethodThatWorks) {
-    core::Capture list = example();
-    list.scan.wall().sensing.grid.reset();
+    const core::Capture list = example_list();
     core::Capture gated = example();
     gated.time_axis = {1.0, 0.3, 1};
     gated.transient = core::Transient(gated.scan.num_pairs(), 1);

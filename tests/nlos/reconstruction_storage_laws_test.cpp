@@ -25,7 +25,6 @@ using nlos_test::kPitch_m;
 using nlos_test::ReconstructionLaw;
 
 const Vec3 kStoredPoint(0.06, -0.1, 0.55);
-const core::TimeAxis kLateAxis{0.704, 0.016, 100};
 
 /// The capture with the histogram of sensing point order[i] in place i, as a grid of that size.
 core::Capture stored_in_order(const core::Capture& capture,
@@ -59,19 +58,6 @@ std::vector<std::size_t> square_order(bool is_reversed, bool is_exchanged) {
         }
     }
     return order;
-}
-
-/// `more` empty bins before and behind.
-core::Capture padded(const core::Capture& capture, int before, int behind) {
-    core::Capture longer = capture;
-    longer.time_axis.opl_start_m -= before * capture.time_axis.bin_width_m;
-    longer.time_axis.num_bins += before + behind;
-    longer.transient = core::Transient(capture.scan.num_pairs(), longer.time_axis.num_bins);
-    for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
-        std::ranges::copy(capture.transient.histogram(pair),
-                          longer.transient.histogram(pair).begin() + before);
-    }
-    return longer;
 }
 
 TEST_P(ReconstructionLaw, AListOfPointsIsTheGridThatTheyFill) {
@@ -120,18 +106,6 @@ TEST_P(ReconstructionLaw, PointsNearlyOnAGridAreOnIt) {
         run(stored_in_order(capture, square_order(true, true), std::nullopt));
     EXPECT_LT((brightest_point(result) - brightest_point(expected)).norm(), 1e-3 * kPitch_m);
     EXPECT_LT(test_support::relative_l2(result.volume.values, expected.volume.values), 0.01);
-}
-
-TEST_P(ReconstructionLaw, EmptyBinsBeforeAndBehindChangeNothing) {
-    core::Capture capture = dark_capture(core::Transform::Identity(), kLateAxis);
-    nlos_test::add_scatterer(capture, kStoredPoint, 4.0);
-    const Reconstruction expected = run(capture);
-    for (const auto& [before, behind] : {std::pair{0, 64}, {30, 0}, {17, 41}}) {
-        const Reconstruction result = run(padded(capture, before, behind));
-        EXPECT_LT(test_support::relative_l2(result.volume.values, expected.volume.values), 1e-5)
-            << before << ", " << behind;
-        EXPECT_EQ(result.points.positions.size(), expected.points.positions.size());
-    }
 }
 
 // The sphere around each wall point on which light may have come from grows by the same length: a

@@ -19,7 +19,7 @@ using core::Vec3;
 using renderer::Estimator;
 using renderer::Object;
 
-const core::TimeAxis kAxis{1.2, 0.2, 20};
+const core::TimeAxis kRenderedAxis{1.2, 0.2, 20};
 
 renderer::RenderSettings settings_of(Estimator estimator) {
     renderer::RenderSettings settings;
@@ -58,7 +58,7 @@ std::vector<float> render(const std::vector<Object>& objects,
                           Estimator estimator) {
     const renderer::Scene scene({objects, {}}, scan, wall);
     const renderer::RenderResult result =
-        renderer::render(scene, scan, {kAxis, {}}, settings_of(estimator), {});
+        renderer::render(scene, scan, {kRenderedAxis, {}}, settings_of(estimator), {});
     const auto values = result.capture.transient.values();
     return {values.begin(), values.end()};
 }
@@ -107,7 +107,10 @@ void expect_the_same_elsewhere(const core::Scan& scan, const char* name) {
             }
             wall.center_m = way;
             const auto values = render(objects, core::moved(scan, way), wall, estimator);
-            EXPECT_LT(relative_difference(values, expected), 1e-6)
+            // Rounding moves where integrators cut elements, within their error, and now and then
+            // on which side of an edge a pixel's sample falls.
+            const bool is_discrete = traits.integrates || !scan.has_wall();
+            EXPECT_LT(relative_difference(values, expected), is_discrete ? 3e-3 : 1e-6)
                 << traits.name << ", " << name << ", " << kilometres << " km";
         }
     }
@@ -148,12 +151,12 @@ TEST(Render, ResultsStayWhereTheSceneStands) {
     const auto scene =
         std::make_shared<const renderer::Scene>(renderer::SceneGeometry{objects, {}}, scan, wall);
     renderer::SceneDescription description;
-    description.time_axis = {kAxis};
+    description.time_axis = {kRenderedAxis};
     description.frames = renderer::FrameSettings{2, 0.1, 0.0};
     for (const Estimator estimator : {Estimator::Path, Estimator::Restir}) {
         description.render = settings_of(estimator);
         const renderer::RenderResult one =
-            renderer::render(*scene, scan, {kAxis, {}}, description.render, {});
+            renderer::render(*scene, scan, {kRenderedAxis, {}}, description.render, {});
         const renderer::RenderResult frames = renderer::render_frames(
             scene, scan, description, make_frame_renderer(scan, description.render), {});
         for (const core::Capture* capture : {&one.capture, &frames.capture}) {

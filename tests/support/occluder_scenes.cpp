@@ -158,13 +158,30 @@ class PointPacket {
     renderer::SegmentEnds ends_;
 };
 
+// Whether a point is on one of the first sheets: what lies at one place counts once.
+bool is_on_sheets(const Vec3& point, const std::vector<Parallelogram>& sheets, std::size_t count) {
+    constexpr double kSamePlane_m = 1e-9;
+    return std::any_of(
+        sheets.begin(),
+        sheets.begin() + static_cast<std::ptrdiff_t>(count),
+        [&](const Parallelogram& sheet) {
+            const Vec3 normal = sheet.u.cross(sheet.v);
+            const Vec3 way = point - sheet.corner;
+            if (std::abs(way.dot(normal)) > kSamePlane_m * normal.norm()) return false;
+            const double along_u = way.cross(sheet.v).dot(normal) / normal.squaredNorm();
+            const double along_v = sheet.u.cross(way).dot(normal) / normal.squaredNorm();
+            return along_u >= 0.0 && along_u <= 1.0 && along_v >= 0.0 && along_v <= 1.0;
+        });
+}
+
 // One point in each cell of a grid on a sheet.
 void sample_sheet(const OccluderScene& setup,
                   const renderer::Scene& scene,
-                  const Parallelogram& sheet,
+                  std::size_t number,
                   double points_per_m2,
                   core::Rng rng,
                   std::vector<double>& sums) {
+    const Parallelogram& sheet = setup.sheets[number];
     const Vec3 area = sheet.u.cross(sheet.v);
     const double per_m = std::sqrt(points_per_m2);
     const int rows = 1 + static_cast<int>(sheet.v.norm() * per_m);
@@ -175,8 +192,10 @@ void sample_sheet(const OccluderScene& setup,
     PointPacket packet(scene, area.normalized());
     for (int i = 0; i < columns; ++i) {
         for (int j = 0; j < rows; ++j) {
-            packet.add(sheet.corner + (i + rng.uniform()) / columns * sheet.u +
-                       (j + rng.uniform()) / rows * sheet.v);
+            const Vec3 point = sheet.corner + (i + rng.uniform()) / columns * sheet.u +
+                               (j + rng.uniform()) / rows * sheet.v;
+            if (is_on_sheets(point, setup.sheets, number)) continue;
+            packet.add(point);
             if (packet.is_full()) packet.add_to(setup, weight, sums);
         }
     }
@@ -195,7 +214,7 @@ std::vector<double> sampled_third_bounce(const OccluderScene& setup,
                              static_cast<std::size_t>(setup.axis.num_bins));
     for (std::size_t i = 0; i < setup.sheets.size(); ++i) {
         if (setup.sheets[i].albedo == 0.0) continue;
-        sample_sheet(setup, scene, setup.sheets[i], num_points / area, core::Rng(seed, i, 0), sums);
+        sample_sheet(setup, scene, i, num_points / area, core::Rng(seed, i, 0), sums);
     }
     return sums;
 }

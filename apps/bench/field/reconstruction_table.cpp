@@ -126,7 +126,6 @@ optional<double> median_of(const std::vector<const ReconstructionRow*>& rows,
 const std::vector<ReconstructionMethod>& reconstruction_methods() {
     static const std::vector<ReconstructionMethod> methods = [] {
         std::vector<ReconstructionMethod> all;
-        // Backprojection, which is listed first, runs first: see SharedCapture::run().
         for (const nlos::MethodTraits* own : nlos::kMethods) {
             all.push_back({"nlos", "", std::string(core::enum_name(own->method))});
         }
@@ -201,7 +200,8 @@ MethodVolume SharedCapture::run_own(const ReconstructionMethod& method) {
     nlos::Reconstruction found = nlos::read_volume(path);
     result.volume = std::move(found.volume);
     result.stated = std::move(found.depth);
-    if (!axes_) axes_ = result.volume.axes;
+    // Its voxels are those of the peers, which run last.
+    if (method.method == core::enum_name(nlos::kBp.method)) axes_ = result.volume.axes;
     return result;
 }
 

@@ -81,10 +81,13 @@ FileMesh parse_text(const std::string& path, std::string_view text) {
             }
             add_triangle(mesh);
             file.parts.back().end = mesh.triangles.size();
-        } else if (keyword == "facet" || keyword == "endsolid") {
-            is_in_solid = is_in_solid && keyword == "facet";
-            take_line(text);  // a normal, which the corners tell too, or a name
-        } else if (keyword != "outer" && keyword != "loop" && keyword != "endloop") {
+        } else if (keyword == "endsolid") {
+            is_in_solid = false;
+            take_line(text);  // its name
+        } else if (keyword == "normal") {
+            for (int i = 0; i < 3; ++i) take_word(text);  // the corners tell it, too
+        } else if (keyword != "facet" && keyword != "outer" && keyword != "loop" &&
+                   keyword != "endloop") {
             throw_damaged(path, "holds " + excerpt(word) + " where a facet should stand");
         }
     }

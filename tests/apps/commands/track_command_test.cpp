@@ -4,6 +4,7 @@
 #include "renderer/core/settings_json.h"
 #include "tests/apps/commands/simulated_walk.h"
 #include "tests/support/command_line.h"
+#include "tests/support/error_message.h"
 
 #include <gtest/gtest.h>
 
@@ -193,14 +194,14 @@ TEST_F(TrackFile, ChecksFramesAsThoseOfLines) {
                                std::numeric_limits<double>::infinity()}) {
         capture = good;
         capture.sequence->frame_s = wrong;
-        expect_bad_input(track(), "frame_s");
+        EXPECT_ERROR_WITH(track(), "frame_s");  // such a file is not even written
     }
     capture = good;
     capture.sequence->frame_s = 0.0;
     EXPECT_NE(run(track()).err.find("do not say how far apart"), std::string::npos);
     EXPECT_EQ(run(track(" --set frame_s=0.0333")).err.find("warning"), std::string::npos);
     capture.sequence->frames.clear();
-    expect_bad_input(track(), "frames: found none");
+    EXPECT_ERROR_WITH(track(), "frames: found none");
 }
 
 TEST_F(TrackFile, UsesThePoseThatIsStated) {

@@ -82,7 +82,7 @@ TEST_F(SweepCommand, TheReportNamesRunsThatFailed) {
 }
 
 TEST_F(SweepCommand, FailsWhenAllRunsDo) {
-    make_sweep({{"grid", {{"reconstruct.memory_gb", {1e-6, 2e-6}}}}});
+    make_sweep({{"grid", {{"reconstruct.memory_gb", {1e-6, 1e-7}}}}});
     const Outcome sweep = run("sweep " + file("sweep.json") + " -o " + file("out"));
     EXPECT_EQ(sweep.status, 1) << sweep.err;
     EXPECT_NE(sweep.err.find("sweep: all of its 2 runs failed"), std::string::npos) << sweep.err;

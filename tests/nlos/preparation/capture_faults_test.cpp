@@ -77,7 +77,7 @@ TEST(CaptureFaults, AHotBinIsFoundWhereverItIs) {
     for (core::Capture& capture :
          std::array{plate_capture(), plate_counts(50.0, 0.0), plate_counts(20.0, 4.0)}) {
         const core::Capture good = capture;
-        for (const int bin : {3, 62, 90, 127}) {
+        for (const int bin : {62, 90, 127}) {
             for (const std::size_t point : {std::size_t{0}, kPoint, kSide * kSide - 1}) {
                 capture = good;
                 capture.transient.histogram(point)[static_cast<std::size_t>(bin)] =

@@ -57,7 +57,7 @@ TEST(SortIntoGrids, ShuffledPointsBecomeTheGridThatTheyFill) {
 
 TEST(SortIntoGrids, AnyWallAndJitterBelowTheToleranceOfGridsWill) {
     std::mt19937 generator(2);
-    std::uniform_real_distribution<double> jitter(-1e-4, 1e-4);  // half a hundredth of the pitch
+    std::uniform_real_distribution<double> jitter(-2e-5, 2e-5);  // a thousandth of the pitch
     core::Transform pose = core::Transform::Identity();
     pose.translate(Vec3(3.0, -2.0, 1.5));
     pose.rotate(Eigen::AngleAxisd(2.1, Vec3(0.3, 1.0, -0.2).normalized()));

@@ -44,12 +44,14 @@ TEST(HistogramPreparation, ZeroesBehindABackgroundAreNotDark) {
     const core::Transient recorded = example_histograms();
     core::Transient longer(2, 500);
     for (std::size_t pair = 0; pair < 2; ++pair) {
-        std::ranges::copy(recorded.histogram(pair), longer.histogram(pair).begin());
+        std::ranges::transform(recorded.histogram(pair),
+                               longer.histogram(pair).begin(),
+                               [](float value) { return 2.0F * value; });
     }
     const auto signal = find_signal(longer);
     ASSERT_TRUE(signal);
-    EXPECT_DOUBLE_EQ(signal->ambient_per_bin[0], 2.0);
-    EXPECT_DOUBLE_EQ(signal->ambient_per_bin[1], 5.0);
+    EXPECT_DOUBLE_EQ(signal->ambient_per_bin[0], 4.0);
+    EXPECT_DOUBLE_EQ(signal->ambient_per_bin[1], 10.0);
     EXPECT_EQ(signal->end_bin, 80);
 }
 

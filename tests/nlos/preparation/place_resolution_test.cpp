@@ -15,17 +15,17 @@ namespace {
 
 using core::Vec3;
 
-constexpr double kBin_m = 0.008;
+constexpr double kBinWidth_m = 0.008;
 
 core::Capture point_capture(std::array<std::size_t, 2> size, double pitch_m) {
     core::Capture capture = nlos_test::confocal_capture(
-        nlos_test::wall_grid(size, {pitch_m, pitch_m}), {0.8, kBin_m, 128});
+        nlos_test::wall_grid(size, {pitch_m, pitch_m}), {0.8, kBinWidth_m, 128});
     nlos_test::add_scatterer(capture, Vec3(0.001, 0.002, 0.6), 4.0);
     return capture;
 }
 
 double resolution_at(const core::Capture& capture, const Vec3& place) {
-    return PlaceResolution(capture.scan.wall(), kBin_m).at(place);
+    return PlaceResolution(capture.scan.wall(), kBinWidth_m).at(place);
 }
 
 // Far before a confocal square of side d a step to the side changes lengths by 2 x / z of it, of
@@ -35,7 +35,7 @@ TEST(PlaceResolution, FallsWithTheApertureAndRisesWithTheRange) {
         const core::Capture capture = point_capture({14, 14}, pitch_m);
         const double mean_square = (14.0 * 14.0 - 1.0) / 12.0 * pitch_m * pitch_m;
         for (const double z : {1.0, 3.0}) {
-            const double expected = kBin_m * z / (2.0 * std::sqrt(mean_square));
+            const double expected = kBinWidth_m * z / (2.0 * std::sqrt(mean_square));
             EXPECT_NEAR(resolution_at(capture, Vec3(0.0, 0.0, z)) / expected, 1.0, 0.01);
         }
     }
@@ -62,9 +62,12 @@ TEST(PlaceResolution, NoMethodStatesSurfacesWhereTheScanTellsNone) {
             if (!is_grid) settings.volume.voxels = std::array{16, 16, 64};
             const Reconstruction result = reconstruct(point_capture(size, pitch_m), settings, {});
             EXPECT_TRUE(result.points.positions.empty()) << method.name << size[0];
-            ASSERT_EQ(result.warnings.size(), 1U) << method.name << size[0];
-            EXPECT_NE(result.warnings[0].find("distances rather than directions"),
-                      std::string::npos);
+            EXPECT_TRUE(std::ranges::any_of(
+                result.warnings,
+                [](const std::string& text) {
+                    return text.find("distances rather than directions") != std::string::npos;
+                }))
+                << method.name << size[0];
         }
     }
 }

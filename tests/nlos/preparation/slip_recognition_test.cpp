@@ -114,7 +114,8 @@ TEST(SlipText, NamesTheOptionThatMends) {
     capture.time_axis.bin_width_m = 12.0;
     EXPECT_EQ(describe_slip(capture, {.length_factor = 1e-3}),
               "lengths look 1000 times too long, as if ps had been taken for ns: --set "
-              "capture.bin_width_m=0.012; or the wall looks 1000 times too small: --set "
+              "capture.bin_width_m=0.012; or the wall looks 1000 times too small, as if km had "
+              "been taken for metres: --set "
               "capture.wall_size_m=[900,900]");
     capture.scan.wall().opl_origin = core::OplOrigin::Device;
     capture.time_axis = {1.5, 0.024, 250};

@@ -20,7 +20,9 @@ TEST(ExcludedFacets, AreThoseOfWallsFlaggedObjectsAndLargeFacets) {
     renderer::SceneGeometry geometry;
     const auto add = [&](const std::string& name, double size) -> renderer::Object& {
         geometry.objects.push_back(test_support::parallelogram_object(
-            {Vec3(0, 0, 1), Vec3(size, 0, 0), Vec3(0, size, 0)}));
+            {Vec3(0, 0, 1.0 + 0.1 * static_cast<double>(geometry.objects.size())),
+             Vec3(size, 0, 0),
+             Vec3(0, size, 0)}));
         geometry.objects.back().name = name;
         return geometry.objects.back();
     };

@@ -102,17 +102,19 @@ TEST(GltfPose, MorphTargetsAddUpBeforeTheNodeMovesThem) {
 TEST(GltfPose, InstancesAreScaledTurnedAndMovedWithinTheirNode) {
     GltfFile file = gltf_test::square_file();
     const auto half = static_cast<float>(std::sqrt(0.5));
-    Json& lists = file.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
-    lists["TRANSLATION"] = file.add_accessor(Floats{0, 0, 0, 0, 0, 4}, kFloat, "VEC3");
-    lists["ROTATION"] = file.add_accessor(Floats{0, 0, 0, 1, 0, 0, half, half}, kFloat, "VEC4");
-    lists["SCALE"] = file.add_accessor(Floats{1, 1, 1, 3, 1, 1}, kFloat, "VEC3");
+    const auto list = [&](const char* name) -> Json& {
+        return file.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"][name];
+    };
+    list("TRANSLATION") = file.add_accessor(Floats{0, 0, 0, 0, 0, 4}, kFloat, "VEC3");
+    list("ROTATION") = file.add_accessor(Floats{0, 0, 0, 1, 0, 0, half, half}, kFloat, "VEC4");
+    list("SCALE") = file.add_accessor(Floats{1, 1, 1, 3, 1, 1}, kFloat, "VEC3");
     file.json["nodes"][0]["translation"] = {10, 0, 0};
     const auto geometry = file.load();
     ASSERT_EQ(geometry.objects.size(), 2U);
     expect_vertices(geometry.objects[0], {{10, 0, 0}, {11, 0, 0}, {10, 1, 0}, {11, 1, 0}});
     expect_vertices(geometry.objects[1], {{10, 0, 4}, {10, 3, 4}, {9, 0, 4}, {9, 3, 4}});
 
-    lists["SCALE"] = file.add_accessor(Floats{1, 1, 1}, kFloat, "VEC3");
+    list("SCALE") = file.add_accessor(Floats{1, 1, 1}, kFloat, "VEC3");
     EXPECT_NE(error_of(file).find("must be as many"), std::string::npos);
 }
 

@@ -17,25 +17,25 @@ using namespace mesh_file_test;
 using core::Vec3;
 
 /// What is seen of a file: its area, the sum of its vertices by triangles, and its albedo.
-struct Look {
+struct MeshLook {
     double area_m2 = 2.0;
     Vec3 center{1.0, 0.5, 0.0};
     double albedo = 1.0;
 };
 
-struct Example {
+struct MeshExample {
     std::string feature;
     std::string name;
     std::string bytes;
-    Look look{};
+    MeshLook look{};
     std::string named{};    ///< a part of the warning; empty: it is applied, without a word
     std::string refused{};  ///< a part of the refusal
     std::string mtl{};      ///< of a.mtl beside it
 };
 
 /// By area, so that it does not depend on how a polygon is cut.
-Look look_of(const renderer::SceneGeometry& geometry) {
-    Look look{0.0, Vec3::Zero(), 0.0};
+MeshLook look_of_mesh(const renderer::SceneGeometry& geometry) {
+    MeshLook look{0.0, Vec3::Zero(), 0.0};
     for (const renderer::Object& object : geometry.objects) {
         for (const auto& triangle : object.mesh.triangles) {
             const auto corner = [&](std::size_t i) { return object.mesh.vertices[triangle[i]]; };
@@ -50,8 +50,8 @@ Look look_of(const renderer::SceneGeometry& geometry) {
     return look;
 }
 
-void check(const std::vector<Example>& examples) {
-    for (const Example& example : examples) {
+void check(const std::vector<MeshExample>& examples) {
+    for (const MeshExample& example : examples) {
         SCOPED_TRACE(example.name + ": " + example.feature);
         const test_support::TemporaryFolder folder;
         const std::string path = folder.file(example.name);
@@ -62,7 +62,7 @@ void check(const std::vector<Example>& examples) {
             continue;
         }
         const renderer::SceneGeometry geometry = renderer::load_mesh_file(path, {});
-        const Look seen = look_of(geometry);
+        const MeshLook seen = look_of_mesh(geometry);
         EXPECT_NEAR(seen.area_m2, example.look.area_m2, 1e-9);
         EXPECT_LT((seen.center - example.look.center).norm(), 1e-6) << seen.center.transpose();
         EXPECT_NEAR(seen.albedo, example.look.albedo, 1e-9);
@@ -78,12 +78,18 @@ void check(const std::vector<Example>& examples) {
 
 const std::string kVertices = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\n";
 
-Example obj(const char* feature, const std::string& text, const char* named = "", Look look = {}) {
+MeshExample obj(const char* feature,
+                const std::string& text,
+                const char* named = "",
+                MeshLook look = {}) {
     return {feature, "a.obj", text, look, named};
 }
 
 /// The rectangle of a material with these lines.
-Example mtl(const char* feature, const char* lines, const char* named = "", Look look = {}) {
+MeshExample mtl(const char* feature,
+                const char* lines,
+                const char* named = "",
+                MeshLook look = {}) {
     return {feature,
             "a.obj",
             "mtllib a.mtl\nusemtl paint\n" + kVertices + "f 1 2 3 4\n",
@@ -120,7 +126,7 @@ TEST(MeshFeatures, OfObjAreAppliedRefusedOrNamed) {
 }
 
 TEST(MeshFeatures, OfMtlAreAppliedOrNamed) {
-    const Vec3 middle = Look().center;
+    const Vec3 middle = MeshLook().center;
     check({
         mtl("Kd", "Kd 0.2 0.4 0.6\n", "", {2.0, middle, 0.4}),
         mtl("Pm, Pr", "Kd 0.5\nPm 1\nPr 0.3\n", "", {2.0, middle, 0.5}),
@@ -141,12 +147,12 @@ TEST(MeshFeatures, OfMtlAreAppliedOrNamed) {
     });
 }
 
-Example ply(const char* feature,
-            const std::string& vertex_properties,
-            const std::string& vertex_values,
-            const std::string& faces,
-            const std::string& face_values,
-            const char* named = "") {
+MeshExample ply(const char* feature,
+                const std::string& vertex_properties,
+                const std::string& vertex_values,
+                const std::string& faces,
+                const std::string& face_values,
+                const char* named = "") {
     std::string text =
         "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
         "float z\n" +
@@ -196,7 +202,7 @@ TEST(MeshFeatures, OfPlyAreAppliedOrNamed) {
     });
 }
 
-std::string binary_stl(const char* header, unsigned attributes) {
+std::string stl_of_two(const char* header, unsigned attributes) {
     core::TriangleMesh mesh;
     mesh.vertices = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -214,10 +220,10 @@ TEST(MeshFeatures, OfStlAreAppliedOrNamed) {
         text += std::string("facet normal 0 0 1 outer loop ") + corners + " endloop endfacet\n";
     }
     check({
-        {"binary", "a.stl", binary_stl("", 0)},
+        {"binary", "a.stl", stl_of_two("", 0)},
         {"text", "a.stl", text + "endsolid a\n"},
-        {"colours of facets", "a.stl", binary_stl("", 0x8000), {}, colours},
-        {"a colour of all", "a.stl", binary_stl("COLOR=abcd", 0), {}, colours},
+        {"colours of facets", "a.stl", stl_of_two("", 0x8000), {}, colours},
+        {"a colour of all", "a.stl", stl_of_two("COLOR=abcd", 0), {}, colours},
     });
 }
 

@@ -7,6 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -31,7 +34,8 @@ const core::WallScan kScan = test_support::confocal_scan({{0.1, 0.1, 0}, {0.4, 0
 TEST(SceneChecks, SurfacesTooNearToAWallPointAreRefused) {
     for (const double depth_m : {1e-6, 1e-5, 9e-5}) {
         EXPECT_ERROR_WITH(make(panel_at(depth_m), kScan), "object panel: found");
-        EXPECT_ERROR_WITH(make(panel_at(depth_m), kScan), "in front of the wall point (0.1 0.1 0)");
+        EXPECT_ERROR_WITH(make(panel_at(depth_m), kScan),
+                          "in front of the wall point (0.1, 0.1, 0)");
     }
     EXPECT_NO_THROW(make(panel_at(2e-4), kScan));
     EXPECT_NO_THROW(make(panel_at(1e-2), kScan));
@@ -58,8 +62,32 @@ TEST(SceneChecks, EdgesThatTouchTheWallMayStay) {
     std::vector<Object> objects = panel_at(0.5);
     objects.push_back(  // a floor that begins at the wall, below its points
         test_support::parallelogram_object({{-0.5, 0.0999, 0}, {1, 0, 0}, {0, 0, 1}}));
-    EXPECT_ERROR_WITH(make(objects, test_support::confocal_scan({{0.1, 0.09995, 0}})), "found");
+    EXPECT_NO_THROW(make(objects, test_support::confocal_scan({{0.1, 0.09995, 0}})));
     EXPECT_NO_THROW(make(objects, test_support::confocal_scan({{0.1, 0.11, 0}})));
+}
+
+TEST(SceneChecks, WhatLiesOffTheRectangleOrBehindItIsNamed) {
+    const auto warnings = [](const std::vector<Object>& objects, const core::WallScan& scan) {
+        return make(objects, scan).warnings();
+    };
+    std::vector<Object> objects = panel_at(0.5);
+    EXPECT_TRUE(warnings(objects, kScan).empty());
+    const auto single = [](const Vec3& spot) {
+        return test_support::single_scan(spot, {Vec3(0.1, 0.1, 0)});
+    };
+    for (const auto& [spot, words] :
+         std::vector<std::pair<Vec3, std::string>>{{{0.2, 0.1, -0.1}, "0.1 m behind"},
+                                                   {{0.2, 0.1, 0.2}, "0.2 m in front of"},
+                                                   {{0.8, 0.1, 0}, "0.3 m beside"}}) {
+        const auto found = warnings(objects, single(spot));
+        ASSERT_EQ(found.size(), 1U) << words;
+        EXPECT_NE(found[0].find(words + " the relay wall"), std::string::npos) << found[0];
+        EXPECT_NE(found[0].find("scan.illumination_m"), std::string::npos) << found[0];
+    }
+    objects[0].mesh.vertices[0].z() = -0.3;
+    const auto behind = warnings(objects, kScan);
+    ASSERT_EQ(behind.size(), 1U);
+    EXPECT_NE(behind[0].find("0.3 m behind the relay wall to 0.5 m"), std::string::npos);
 }
 
 TEST(SceneChecks, VerticesThatAreNotFiniteAreRefused) {

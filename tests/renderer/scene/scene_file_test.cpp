@@ -113,9 +113,9 @@ TEST(SceneFile, OverridesWinOverTheFile) {
 
 TEST(SceneFile, BinsInPicosecondsLeaveTheRestToTheLight) {
     const double width_m = 10e-12 * core::kSpeedOfLight;
-    for (const std::string& axis : {R"({"opl_start_m": 1.0, "bin_width_m": 0.1, "num_bins": 9})",
-                                    R"("auto")",
-                                    R"({"num_bins": 100})"}) {
+    for (const std::string axis : {R"({"opl_start_m": 1.0, "bin_width_m": 0.1, "num_bins": 9})",
+                                   R"("auto")",
+                                   R"({"num_bins": 100})"}) {
         const auto scene = read_text(R"({"geometry": "a.glb", "time_axis": )" + axis + "}",
                                      {"time_axis.bin_width_ps=10"});
         EXPECT_TRUE(scene.time_axis.automatic) << axis;
@@ -124,7 +124,7 @@ TEST(SceneFile, BinsInPicosecondsLeaveTheRestToTheLight) {
         EXPECT_FALSE(scene.time_axis.stated.opl_start || scene.time_axis.stated.num_bins);
         // What is echoed says the same.
         renderer::SceneTimeAxis again;
-        read_value(write_value(scene.time_axis), "time_axis", again);
+        read_value(core::write_value(scene)["time_axis"], "time_axis", again);
         EXPECT_NEAR(again.bin_width_m, width_m, 1e-15);
         EXPECT_TRUE(again.automatic);
     }
