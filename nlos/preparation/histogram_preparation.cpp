@@ -52,6 +52,23 @@ struct Segments {
     }
 };
 
+/// The bins from the first to the last that any histogram holds something in; none in the dark.
+core::BinRange filled_bins(const core::Transient& transient) {
+    const auto is_filled = [](float value) { return value != 0.0F; };
+    std::size_t begin = transient.num_bins();
+    std::size_t end = 0;
+    for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
+        const auto histogram = transient.histogram(pair);
+        const auto before = histogram.first(begin);
+        begin = static_cast<std::size_t>(std::ranges::find_if(before, is_filled) - before.begin());
+        const auto behind = histogram.subspan(end);
+        end += static_cast<std::size_t>(
+            std::find_if(behind.rbegin(), behind.rend(), is_filled).base() - behind.begin());
+    }
+    return begin < end ? core::BinRange{static_cast<int>(begin), static_cast<int>(end)}
+                       : core::BinRange{};
+}
+
 /// Whether a background goes on to the last filled bin and then is none: what is behind was never
 /// recorded. Light fades instead, and what is behind it is dark.
 bool ends_at_once(const core::Transient& transient, const core::BinRange& filled) {
@@ -163,26 +180,6 @@ class SegmentedTransient {
 };
 
 }  // namespace
-
-core::BinRange filled_bins(const core::Transient& transient,
-                           const std::vector<double>& ambient_per_bin) {
-    std::size_t begin = transient.num_bins();
-    std::size_t end = 0;
-    for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
-        const double ambient = ambient_per_bin.empty() ? 0.0 : ambient_per_bin[pair];
-        const auto is_filled = [&](float value) {
-            return value != 0.0F && static_cast<double>(value) != ambient;
-        };
-        const auto histogram = transient.histogram(pair);
-        const auto before = histogram.first(begin);
-        begin = static_cast<std::size_t>(std::ranges::find_if(before, is_filled) - before.begin());
-        const auto behind = histogram.subspan(end);
-        end += static_cast<std::size_t>(
-            std::find_if(behind.rbegin(), behind.rend(), is_filled).base() - behind.begin());
-    }
-    return begin < end ? core::BinRange{static_cast<int>(begin), static_cast<int>(end)}
-                       : core::BinRange{};
-}
 
 std::optional<SignalExtent> find_signal(const core::Transient& transient,
                                         const core::ObservedBins& observed,

@@ -21,11 +21,6 @@ struct SignalExtent {
     bool has_background = false;          ///< it is there, and the same in all of its segments
 };
 
-/// The bins from the first to the last that is not empty in every histogram: neither 0 nor just the
-/// background; none in the dark.
-core::BinRange filled_bins(const core::Transient& transient,
-                           const std::vector<double>& ambient_per_bin = {});
-
 /// Finds constant background light and the end of the signal.
 ///
 /// Of 32 segments of the axis, the quarter that is darkest over all pairs gives each pair's ambient

@@ -35,11 +35,6 @@ constexpr double kMinNormalCosine = 0.5;
 // Confidence counts frames, whatever their number of candidates.
 constexpr double kConfidenceOfFrame = 1.0;
 
-PathReservoir limited(PathReservoir reservoir, double most) {
-    reservoir.confidence = std::min(reservoir.confidence, most);
-    return reservoir;
-}
-
 PathCandidates::Effort effort_of(const RestirSettings& settings, double share) {
     PathCandidates::Effort effort;
     effort.walks = std::max(1, static_cast<int>(std::lround(share * settings.walks)));
@@ -117,7 +112,7 @@ struct RestirRenderer::Worker {
         ++counts.num_merges;
         ReuseStatistics& sums = statistics[pair % 2];
         if (!here.is_same_as(there)) {
-            past = limited(past, settings.confidence_cap);
+            past.confidence = std::min<double>(past.confidence, settings.confidence_cap);
             sums.add_shift(fresh, past, in);
             past.confidence /= 1.0 + past.confidence * shift_noise[pair % 2];
         }
