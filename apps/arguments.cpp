@@ -2,7 +2,7 @@
 #include "apps/arguments.h"
 
 #include "renderer/core/file_suffix.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>

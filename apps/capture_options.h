@@ -3,7 +3,7 @@
 
 #include "apps/arguments.h"
 #include "nlos/formats/capture_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/settings_help.h"
+#include "renderer/core/settings/settings_help.h"
 
 #include <CLI/CLI.hpp>
 

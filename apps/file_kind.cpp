@@ -6,7 +6,7 @@
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
 #include "renderer/core/file_suffix.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "renderer/mesh_file/mesh_file.h"
 
 #include <algorithm>

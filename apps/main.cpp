@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/program.h"
-#include "renderer/core/large_memory.h"
+#include "renderer/core/system/large_memory.h"
 
 int main(int argc, char** argv) {
     core::keep_freed_memory();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The program's own `new`: large blocks stand in huge pages.
-#include "renderer/core/large_memory.h"
+#include "renderer/core/system/large_memory.h"
 
 #include <cstdlib>
 #include <new>

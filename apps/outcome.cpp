@@ -2,9 +2,9 @@
 #include "apps/outcome.h"
 
 #include "apps/terminal.h"
-#include "renderer/core/json_file.h"
-#include "renderer/core/process.h"
+#include "renderer/core/settings/json_file.h"
 #include "renderer/core/stopwatch.h"
+#include "renderer/core/system/process.h"
 
 #include <algorithm>
 

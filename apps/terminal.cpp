@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/terminal.h"
 
-#include "renderer/core/output_file.h"
+#include "renderer/core/system/output_file.h"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "calib/calibrate.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/core.h>
 

@@ -6,7 +6,7 @@
 #include "calib/setup/setup_geometry.h"
 #include "renderer/core/capture/capture.h"
 #include "renderer/core/capture/instrument_response.h"
-#include "renderer/core/json_fwd.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <optional>
 #include <string>

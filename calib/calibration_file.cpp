@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "calib/calibrate.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 namespace calib {
 namespace {

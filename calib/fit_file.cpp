@@ -2,7 +2,7 @@
 #include "calib/fit_file.h"
 
 #include "renderer/core/mapped_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <filesystem>
 

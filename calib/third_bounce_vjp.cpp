@@ -3,7 +3,7 @@
 
 #include "calib/adjoint/pair_evaluator.h"
 #include "renderer/core/error.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/core.h>
 

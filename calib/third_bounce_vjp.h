@@ -6,7 +6,7 @@
 #include "renderer/core/capture/capture.h"
 #include "renderer/core/mesh.h"
 #include "renderer/core/progress.h"
-#include "renderer/core/settings.h"
+#include "renderer/core/settings/settings.h"
 
 #include <span>
 #include <vector>

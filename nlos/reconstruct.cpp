@@ -6,8 +6,8 @@
 #include "nlos/preparation/place_resolution.h"
 #include "nlos/preparation/second_capture.h"
 #include "nlos/reconstruct_choices.h"
-#include "renderer/core/process.h"
 #include "renderer/core/stopwatch.h"
+#include "renderer/core/system/process.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/bounce_truncation.h"
 
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/path/path_tracer.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/ellipsoidal_render.h"
 
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/ellipsoidal/ellipsoidal_tracer.h"
 
 #include <fmt/core.h>

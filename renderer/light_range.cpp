@@ -2,8 +2,8 @@
 #include "renderer/light_range.h"
 
 #include "renderer/core/capture/instrument_response.h"
-#include "renderer/core/parallel.h"
 #include "renderer/core/sampling.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/frame_sequence.h"
 #include "renderer/path/path_tracer.h"
 #include "renderer/scene/area_sampler.h"

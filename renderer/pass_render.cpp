@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/pass_render.h"
 
-#include "renderer/core/parallel.h"
-#include "renderer/core/process.h"
 #include "renderer/core/stopwatch.h"
+#include "renderer/core/system/parallel.h"
+#include "renderer/core/system/process.h"
 #include "renderer/film/transient_accumulator.h"
 #include "renderer/pass_plan.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/restir_render.h"
 
-#include "renderer/core/parallel.h"
 #include "renderer/core/sampling.h"
 #include "renderer/core/stopwatch.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/ellipsoidal_render.h"
 #include "renderer/restir/restir_renderer.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/generated_scenes.h"
 
-#include "renderer/core/output_file.h"
+#include "renderer/core/system/output_file.h"
 #include "renderer/gltf/gltf.h"
 
 #include "scenes/shapes.h"

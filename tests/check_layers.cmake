@@ -10,6 +10,8 @@ cmake_minimum_required(VERSION 3.25)
 
 set(floors_renderer
     "renderer/core"
+    "renderer/core/settings"
+    "renderer/core/system"
     "renderer/core/capture|renderer/core/mesh_formats"
     "renderer/settings|renderer/material|renderer/triangle"
     "renderer/gltf|renderer/mesh_file|renderer/film"
@@ -55,7 +57,8 @@ set(below_apps "renderer/|nlos/|calib/")
 set(private_headers renderer/scene/embree.h)
 set(anywhere
     "Eigen/|tbb/|nlohmann/|fmt/|sys/|unistd\\.h|spawn\\.h|fcntl\\.h|poll\\.h|dlfcn\\.h|link\\.h|immintrin\\.h|experimental/simd")
-set(third_renderer/core "flann/|malloc\\.h")
+set(third_renderer/core "flann/")
+set(third_renderer/core/system "malloc\\.h")
 set(third_renderer/gltf "tiny_gltf")
 set(third_renderer/scene "embree[34]/")
 set(third_renderer/scene_import "pugixml\\.hpp|yaml-cpp/")

@@ -2,7 +2,7 @@
 #include "apps/batch/work_share.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/settings.h"
+#include "renderer/core/settings/settings.h"
 
 #include <fmt/core.h>
 

@@ -4,8 +4,8 @@
 #include "nlos/fourier/even_transform.h"
 #include "nlos/fourier/padded_plane.h"
 #include "nlos/methods/methods.h"
-#include "renderer/core/process.h"
 #include "renderer/core/random.h"
+#include "renderer/core/system/process.h"
 #include "renderer/scene/area_sampler.h"
 
 #include <algorithm>

@@ -10,9 +10,9 @@
 #include "apps/version.h"
 #include "nlos/pictures/picture.h"
 #include "renderer/core/mapped_file.h"
-#include "renderer/core/output_file.h"
-#include "renderer/core/parallel.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/output_file.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>

@@ -3,9 +3,9 @@
 
 #include "nlos/pictures/panel.h"
 #include "nlos/plots/plot.h"
-#include "renderer/core/json_file.h"
 #include "renderer/core/progress.h"
-#include "renderer/core/settings.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/settings/settings.h"
 
 #include <functional>
 #include <map>

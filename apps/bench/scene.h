@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/compare/compare.h"
-#include "renderer/core/data_folder.h"
+#include "renderer/core/system/data_folder.h"
 #include "renderer/render.h"
 #include "renderer/scene/scene_file.h"
 

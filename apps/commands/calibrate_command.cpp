@@ -8,8 +8,8 @@
 #include "apps/version.h"
 #include "calib/calibrate.h"
 #include "nlos/formats/capture_file.h"
-#include "renderer/core/output_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/output_file.h"
 
 namespace apps {
 namespace {

@@ -13,8 +13,8 @@
 #include "nlos/pictures/picture.h"
 #include "nlos/pictures/pictures.h"
 #include "renderer/core/mesh_formats/mesh_formats.h"
-#include "renderer/core/output_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/output_file.h"
 #include "renderer/scene/load_geometry.h"
 
 #include <filesystem>

@@ -6,8 +6,8 @@
 #include "apps/terminal.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/preparation/gated_capture.h"
-#include "renderer/core/json_file.h"
-#include "renderer/core/output_file.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/system/output_file.h"
 #include "renderer/gltf/gltf.h"
 #include "renderer/scene_import/scene_import.h"
 

@@ -12,9 +12,9 @@
 #include "nlos/formats/capture_file.h"
 #include "nlos/pictures/picture.h"
 #include "nlos/pictures/pictures.h"
-#include "renderer/core/data_folder.h"
 #include "renderer/core/error.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/data_folder.h"
 
 #include <filesystem>
 

@@ -11,7 +11,7 @@
 #include "renderer/core/capture/recorded_detector.h"
 #include "renderer/core/file_suffix.h"
 #include "renderer/core/mesh_formats/mesh_formats.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <fmt/ranges.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/commands/describe_file.h"
 #include "renderer/core/capture/sensor_footprint.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/light_range.h"
 #include "renderer/scene/coincident_faces.h"
 #include "renderer/scene/load_geometry.h"

@@ -6,8 +6,8 @@
 #include "apps/outcome.h"
 #include "apps/terminal.h"
 #include "renderer/core/error.h"
-#include "renderer/core/parallel.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/core.h>
 

@@ -11,8 +11,8 @@
 #include "nlos/formats/volume_file.h"
 #include "nlos/preparation/capture_check.h"
 #include "nlos/preparation/capture_faults.h"
-#include "renderer/core/output_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/output_file.h"
 #include "renderer/gltf/gltf.h"
 #include "renderer/scene/load_geometry.h"
 

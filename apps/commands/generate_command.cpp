@@ -7,7 +7,7 @@
 #include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/core.h>
 

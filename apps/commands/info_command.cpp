@@ -16,10 +16,10 @@
 #include "nlos/pictures/picture.h"
 #include "nlos/pictures/pictures.h"
 #include "renderer/core/capture/capture.h"
-#include "renderer/core/json_file.h"
-#include "renderer/core/output_file.h"
-#include "renderer/core/parallel.h"
 #include "renderer/core/progress.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/system/output_file.h"
+#include "renderer/core/system/parallel.h"
 
 #include <algorithm>
 #include <iterator>

@@ -5,7 +5,7 @@
 #include "apps/outcome.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
-#include "renderer/core/output_file.h"
+#include "renderer/core/system/output_file.h"
 
 #include <filesystem>
 #include <sstream>

@@ -5,7 +5,7 @@
 #include "apps/outcome.h"
 #include "apps/terminal.h"
 #include "nlos/methods/methods.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/format.h>
 

@@ -11,8 +11,8 @@
 #include "nlos/pictures/pictures.h"
 #include "nlos/reconstruction/surface_mesh.h"
 #include "renderer/core/mesh_formats/ply_writer.h"
-#include "renderer/core/output_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/output_file.h"
 #include "renderer/gltf/gltf.h"
 
 #include <fmt/ranges.h>

@@ -3,8 +3,8 @@
 #include "apps/commands/render_job.h"
 #include "apps/outcome.h"
 #include "apps/terminal.h"
-#include "renderer/core/parallel.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/scene/scene_file.h"
 
 #include <fmt/core.h>

@@ -10,9 +10,9 @@
 #include "nlos/formats/capture_file.h"
 #include "renderer/core/capture/recorded_detector.h"
 #include "renderer/core/capture/sensor_footprint.h"
-#include "renderer/core/output_file.h"
-#include "renderer/core/parallel.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/output_file.h"
+#include "renderer/core/system/parallel.h"
 
 #include <algorithm>
 #include <numeric>

@@ -5,7 +5,7 @@
 #include "nlos/layouts/layout_capture.h"
 #include "renderer/core/capture/instrument_response.h"
 #include "renderer/core/capture/recorded_detector.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <fmt/core.h>
 

@@ -11,9 +11,9 @@
 #include "calib/track/track_file.h"
 #include "calib/track/tracker.h"
 #include "nlos/pictures/picture.h"
-#include "renderer/core/json_file.h"
-#include "renderer/core/output_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "renderer/core/stopwatch.h"
+#include "renderer/core/system/output_file.h"
 
 #include <fmt/core.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/dataset_index.h"
 
-#include "renderer/core/output_file.h"
-#include "renderer/core/parallel.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/output_file.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/ranges.h>
 

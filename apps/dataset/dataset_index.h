@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/dataset/manifest.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <string>
 #include <variant>

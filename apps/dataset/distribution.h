@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/json_fwd.h"
 #include "renderer/core/random.h"
-#include "renderer/core/settings.h"
+#include "renderer/core/settings/json_fwd.h"
+#include "renderer/core/settings/settings.h"
 
 #include <map>
 #include <string>

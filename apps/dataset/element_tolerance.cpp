@@ -2,7 +2,7 @@
 #include "apps/dataset/element_tolerance.h"
 
 #include "nlos/compare/compare.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/render.h"
 
 #include <algorithm>

@@ -5,10 +5,10 @@
 #include "apps/dataset/element_tolerance.h"
 #include "apps/dataset/item_preview.h"
 #include "nlos/pictures/picture.h"
-#include "renderer/core/output_file.h"
-#include "renderer/core/parallel.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/core/stopwatch.h"
+#include "renderer/core/system/output_file.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/core.h>
 #include <unistd.h>

@@ -4,8 +4,8 @@
 #include "apps/dataset/item_plan.h"
 #include "nlos/containers/shape.h"
 #include "nlos/containers/stored_number.h"
-#include "renderer/core/json_file.h"
 #include "renderer/core/progress.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <span>
 #include <string>

@@ -3,7 +3,7 @@
 
 #include "apps/dataset/mesh_library.h"
 #include "apps/dataset/recipe.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "renderer/material/scene_geometry.h"
 
 #include <cstdint>

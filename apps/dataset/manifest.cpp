@@ -2,8 +2,8 @@
 #include "apps/dataset/manifest.h"
 
 #include "apps/batch/checksum.h"
-#include "renderer/core/output_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/output_file.h"
 
 #include <fmt/core.h>
 

@@ -2,7 +2,7 @@
 #include "apps/dataset/mesh_library.h"
 
 #include "apps/batch/checksum.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "renderer/mesh_file/mesh_file.h"
 #include "renderer/scene/load_geometry.h"
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "apps/dataset/recipe.h"
-#include "renderer/core/json_fwd.h"
 #include "renderer/core/mesh.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <cstdint>
 #include <map>

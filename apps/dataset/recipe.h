@@ -4,7 +4,7 @@
 #include "apps/dataset/distribution.h"
 #include "apps/shapes/shapes.h"
 #include "nlos/detector/detector.h"
-#include "renderer/core/json_fwd.h"
+#include "renderer/core/settings/json_fwd.h"
 #include "renderer/scene/scene_file.h"
 
 #include <cstdint>

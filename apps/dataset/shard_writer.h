@@ -4,7 +4,7 @@
 #include "apps/dataset/item.h"
 #include "nlos/containers/writers/hdf5_writer.h"
 #include "nlos/containers/writers/tar_writer.h"
-#include "renderer/core/json_fwd.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <cstdint>
 #include <memory>

@@ -3,7 +3,7 @@
 #include "nlos/pictures/image_layout.h"
 #include "nlos/pictures/light_scale.h"
 #include "nlos/preparation/wall_frame.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <fmt/core.h>
 

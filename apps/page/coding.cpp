@@ -3,8 +3,8 @@
 
 #include "apps/page/html.h"
 #include "renderer/core/error.h"
-#include "renderer/core/json_file.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/core.h>
 #include <zlib.h>

@@ -5,7 +5,7 @@
 #include "apps/scene_truth.h"
 #include "nlos/canvas/colour_map.h"
 #include "nlos/preparation/wall_frame.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "renderer/scene/load_geometry.h"
 
 #include <fmt/core.h>

@@ -3,8 +3,8 @@
 
 #include "apps/page/result_view.h"
 #include "renderer/core/capture/capture.h"
-#include "renderer/core/json_fwd.h"
 #include "renderer/core/mesh.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <array>
 #include <cstdint>

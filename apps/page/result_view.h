@@ -3,7 +3,7 @@
 
 #include "apps/page/coding.h"
 #include "nlos/reconstruction/reconstruction.h"
-#include "renderer/core/json_fwd.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <array>
 #include <cstdint>

@@ -7,7 +7,7 @@
 #include "calib/fit.h"
 #include "nlos/pictures/picture.h"
 #include "renderer/core/capture/capture.h"
-#include "renderer/core/json_fwd.h"
+#include "renderer/core/settings/json_fwd.h"
 #include "renderer/material/scene_geometry.h"
 #include "renderer/scene/scene_file.h"
 

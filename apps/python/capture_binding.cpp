@@ -3,7 +3,7 @@
 #include "apps/python/capture_histograms.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/pictures/pictures.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <fmt/ranges.h>
 #include <nanobind/stl/map.h>

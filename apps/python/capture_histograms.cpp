@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/python/capture_histograms.h"
 
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <limits>
 

@@ -3,7 +3,7 @@
 #include "apps/commands/fit_pictures.h"
 #include "apps/python/bindings.h"
 #include "calib/fit_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/scene/load_geometry.h"
 
 #include <fmt/core.h>

@@ -3,7 +3,7 @@
 #include "apps/python/bindings.h"
 #include "apps/python/capture_histograms.h"
 #include "calib/third_bounce_vjp.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <nanobind/stl/string.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/python/json_values.h"
 
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <nanobind/stl/string.h>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "renderer/core/error.h"
-#include "renderer/core/parallel.h"
 #include "renderer/core/progress.h"
+#include "renderer/core/system/parallel.h"
 
 #include <nanobind/nanobind.h>
 

@@ -4,7 +4,7 @@
 #include "apps/arguments.h"
 #include "apps/python/bindings.h"
 #include "apps/version.h"
-#include "renderer/core/data_folder.h"
+#include "renderer/core/system/data_folder.h"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>

@@ -4,7 +4,7 @@
 #include "nlos/pictures/pictures.h"
 #include "nlos/reconstruction/surface_mesh.h"
 #include "renderer/core/mesh_formats/ply_writer.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <fmt/core.h>
 #include <nanobind/stl/optional.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/python/bindings.h"
 #include "apps/scene_truth.h"
-#include "renderer/core/output_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/output_file.h"
 #include "renderer/gltf/gltf.h"
 #include "renderer/scene/load_geometry.h"
 

@@ -16,8 +16,8 @@
 #include "nlos/formats/capture_file.h"
 #include "renderer/core/capture/recorded_detector.h"
 #include "renderer/core/capture/sensor_footprint.h"
-#include "renderer/core/settings_help.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_help.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>

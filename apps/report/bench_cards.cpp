@@ -2,7 +2,7 @@
 #include "apps/report/bench_cards.h"
 
 #include "apps/page/html.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <fmt/core.h>
 

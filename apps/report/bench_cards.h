@@ -3,7 +3,7 @@
 
 #include "apps/report/result_cards.h"
 #include "apps/tables/tables.h"
-#include "renderer/core/json_fwd.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <string>
 #include <vector>

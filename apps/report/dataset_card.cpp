@@ -3,7 +3,7 @@
 
 #include "apps/dataset/dataset_index.h"
 #include "nlos/pictures/picture.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <fmt/core.h>
 

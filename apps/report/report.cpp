@@ -6,8 +6,8 @@
 #include "apps/report/lead.h"
 #include "apps/report/metrics_table.h"
 #include "apps/version.h"
-#include "renderer/core/json_file.h"
-#include "renderer/core/output_file.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/system/output_file.h"
 
 #include <fmt/core.h>
 

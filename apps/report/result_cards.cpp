@@ -8,7 +8,7 @@
 #include "nlos/pictures/pictures.h"
 #include "nlos/preparation/wall_frame.h"
 #include "renderer/core/mapped_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/core/statistics.h"
 
 #include <fmt/core.h>

@@ -3,7 +3,7 @@
 
 #include "nlos/reconstruction/reconstruction.h"
 #include "renderer/core/capture/capture.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <string>
 #include <utility>

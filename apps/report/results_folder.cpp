@@ -5,7 +5,7 @@
 #include "calib/fit_file.h"
 #include "calib/track/track_file.h"
 #include "nlos/formats/volume_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <algorithm>
 #include <filesystem>

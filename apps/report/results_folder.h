@@ -8,7 +8,7 @@
 #include "apps/report/sweep_cards.h"
 #include "nlos/compare/compare.h"
 #include "nlos/formats/capture_file.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <optional>
 #include <string>

@@ -3,7 +3,7 @@
 
 #include "apps/page/html.h"
 #include "apps/report/result_cards.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <fmt/core.h>
 

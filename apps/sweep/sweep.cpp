@@ -2,8 +2,8 @@
 #include "apps/sweep/sweep.h"
 
 #include "apps/version.h"
-#include "renderer/core/output_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/output_file.h"
 
 #include <fmt/core.h>
 

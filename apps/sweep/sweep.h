@@ -6,8 +6,8 @@
 #include "apps/sweep/sweep_plan.h"
 #include "nlos/compare/metrics.h"
 #include "renderer/core/capture/capture.h"
-#include "renderer/core/json_fwd.h"
 #include "renderer/core/progress.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <cstddef>
 #include <optional>

@@ -5,8 +5,8 @@
 #include "apps/sweep/sweep.h"
 #include "apps/sweep/sweep_summary.h"
 #include "apps/terminal.h"
-#include "renderer/core/json_file.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/core.h>
 

@@ -5,7 +5,7 @@
 #include "apps/sweep/sweep_summary.h"
 #include "renderer/core/capture/instrument_response.h"
 #include "renderer/core/mapped_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/scene/load_geometry.h"
 
 #include <fmt/core.h>

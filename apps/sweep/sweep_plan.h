@@ -4,7 +4,7 @@
 #include "apps/sweep/sweep_settings.h"
 #include "nlos/detector/detector.h"
 #include "nlos/reconstruction/reconstruct_settings.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "renderer/scene/scene_file.h"
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/sweep/sweep.h"
 #include "apps/sweep/sweep_summary.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <fmt/ranges.h>
 

@@ -3,8 +3,8 @@
 
 #include "apps/version.h"
 #include "nlos/pictures/picture.h"
-#include "renderer/core/output_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/output_file.h"
 
 #include <fmt/ranges.h>
 

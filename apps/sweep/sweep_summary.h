@@ -4,7 +4,7 @@
 #include "apps/sweep/sweep_plan.h"
 #include "apps/tables/tables.h"
 #include "nlos/plots/plot.h"
-#include "renderer/core/json_fwd.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <map>
 #include <string>

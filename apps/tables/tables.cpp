@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/tables/tables.h"
 
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>

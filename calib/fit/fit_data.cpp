@@ -2,7 +2,7 @@
 #include "calib/fit/fit_data.h"
 
 #include "renderer/core/capture/instrument_response.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/core.h>
 

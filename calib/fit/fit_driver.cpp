@@ -5,7 +5,7 @@
 #include "calib/model/scene_model.h"
 #include "renderer/core/capture/recorded_detector.h"
 #include "renderer/core/error.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/core.h>
 

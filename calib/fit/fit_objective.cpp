@@ -3,7 +3,7 @@
 
 #include "calib/statistics/poisson_deviance.h"
 #include "calib/statistics/uncertainty.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 #include "calib/fit/initial_guesses.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/parallel.h"
 #include "renderer/core/random.h"
+#include "renderer/core/system/parallel.h"
 
 #include <algorithm>
 #include <cmath>

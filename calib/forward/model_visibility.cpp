@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "calib/forward/model_elements.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/scene/scene.h"
 
 #include <cmath>

@@ -8,7 +8,7 @@
 #include "calib/forward/forward_model.h"
 #include "calib/forward/model_elements.h"
 #include "calib/model/state_vector.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include "calib/model/fit_settings.h"
 
 #include "calib/model/parameter.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "renderer/core/capture/instrument_response.h"
-#include "renderer/core/json_fwd.h"
-#include "renderer/core/settings.h"
+#include "renderer/core/settings/json_fwd.h"
+#include "renderer/core/settings/settings.h"
 
 #include <array>
 #include <map>

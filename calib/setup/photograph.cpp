@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "calib/setup/boards.h"
 #include "renderer/core/error.h"
-#include "renderer/core/json_file.h"
 #include "renderer/core/mapped_file.h"
-#include "renderer/core/sandboxed_process.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/system/sandboxed_process.h"
 
 #include <fmt/core.h>
 #include <png.h>

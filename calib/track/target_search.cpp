@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "calib/track/target_search.h"
 
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "calib/track/tracker.h"
-#include "renderer/core/json_fwd.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <optional>
 #include <string>

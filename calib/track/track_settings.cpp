@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "calib/track/track_settings.h"
 
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 namespace calib {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "renderer/core/capture/relay_wall.h"
 #include "renderer/core/capture/sensor_footprint.h"
-#include "renderer/core/settings.h"
+#include "renderer/core/settings/settings.h"
 
 #include <array>
 #include <optional>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/containers/shape.h"
-#include "renderer/core/boxed_json.h"
+#include "renderer/core/settings/boxed_json.h"
 
 #include <memory>
 #include <optional>

@@ -3,8 +3,8 @@
 
 #include "nlos/containers/text_checksum.h"
 #include "renderer/core/error.h"
-#include "renderer/core/json_file.h"
-#include "renderer/core/sandboxed_process.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/system/sandboxed_process.h"
 
 #include <fmt/core.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/containers/array_file.h"
-#include "renderer/core/json_fwd.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -3,10 +3,10 @@
 
 #include "nlos/containers/file_memory.h"
 #include "renderer/core/error.h"
-#include "renderer/core/json_file.h"
 #include "renderer/core/mapped_file.h"
-#include "renderer/core/output_file.h"
-#include "renderer/core/sandboxed_process.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/system/output_file.h"
+#include "renderer/core/system/sandboxed_process.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfDoubleAttribute.h>

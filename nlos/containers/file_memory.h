@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/process.h"
+#include "renderer/core/system/process.h"
 
 #include <cstdint>
 

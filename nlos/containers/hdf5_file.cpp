@@ -4,7 +4,7 @@
 #include "nlos/containers/file_memory.h"
 #include "nlos/containers/hdf5_filters.h"
 #include "renderer/core/error.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <fmt/core.h>
 #include <hdf5.h>

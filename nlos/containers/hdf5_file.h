@@ -3,7 +3,7 @@
 
 #include "nlos/containers/array_file.h"
 #include "nlos/containers/hdf5_handle.h"
-#include "renderer/core/json_fwd.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <cstdint>
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/json_leaves.h"
 
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <algorithm>
 #include <limits>

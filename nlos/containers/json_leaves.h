@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/containers/stored_array.h"
-#include "renderer/core/json_fwd.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <string>
 #include <vector>

@@ -7,8 +7,8 @@
 #include "nlos/containers/unicode_text.h"
 #include "renderer/core/error.h"
 #include "renderer/core/mapped_file.h"
-#include "renderer/core/process.h"
-#include "renderer/core/sandboxed_process.h"
+#include "renderer/core/system/process.h"
+#include "renderer/core/system/sandboxed_process.h"
 
 #include <fmt/core.h>
 #include <matio.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/containers/json_leaves.h"
 #include "renderer/core/error.h"
-#include "renderer/core/json_file.h"
 #include "renderer/core/mapped_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <fmt/core.h>
 

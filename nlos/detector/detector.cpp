@@ -3,8 +3,8 @@
 
 #include "nlos/detector/count_sampling.h"
 #include "nlos/detector/dead_time.h"
-#include "renderer/core/parallel.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/core.h>
 

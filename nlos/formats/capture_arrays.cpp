@@ -2,7 +2,7 @@
 #include "nlos/formats/capture_arrays.h"
 
 #include "nlos/formats/ytal_layout.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 namespace nlos {
 

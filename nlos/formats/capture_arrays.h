@@ -3,7 +3,7 @@
 
 #include "nlos/containers/shape.h"
 #include "renderer/core/capture/capture.h"
-#include "renderer/core/json_fwd.h"
+#include "renderer/core/settings/json_fwd.h"
 
 namespace nlos {
 

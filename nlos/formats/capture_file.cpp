@@ -8,8 +8,8 @@
 #include "nlos/layouts/layout_guess.h"
 #include "renderer/core/error.h"
 #include "renderer/core/file_suffix.h"
-#include "renderer/core/json_file.h"
-#include "renderer/core/settings.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/settings/settings.h"
 
 #include <fmt/core.h>
 

@@ -3,7 +3,7 @@
 
 #include "nlos/formats/capture_format.h"
 #include "renderer/core/error.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include "nlos/containers/exr_table.h"
 #include "renderer/core/capture/capture.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <string>
 #include <vector>

@@ -3,8 +3,8 @@
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/exr_attributes.h"
 #include "renderer/core/error.h"
-#include "renderer/core/json_file.h"
 #include "renderer/core/precision.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <fmt/core.h>
 

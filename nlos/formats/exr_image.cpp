@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/exr_attributes.h"
 #include "renderer/core/error.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <fmt/core.h>
 

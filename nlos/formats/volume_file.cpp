@@ -5,7 +5,7 @@
 #include "nlos/containers/writers/hdf5_writer.h"
 #include "nlos/formats/capture_format.h"
 #include "renderer/core/error.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <fmt/core.h>
 

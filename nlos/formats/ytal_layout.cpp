@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/ytal_layout.h"
 
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 namespace nlos {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/formats/capture_file.h"
-#include "renderer/core/json_fwd.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <string>
 #include <utility>

@@ -4,7 +4,7 @@
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/ytal_layout.h"
 #include "renderer/core/error.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <fmt/core.h>
 

@@ -3,8 +3,8 @@
 #include "nlos/formats/capture_arrays.h"
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/ytal_layout.h"
-#include "renderer/core/json_file.h"
 #include "renderer/core/precision.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <algorithm>
 #include <span>

@@ -2,7 +2,7 @@
 #include "nlos/fourier/fft.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/large_memory.h"
+#include "renderer/core/system/large_memory.h"
 
 #include <fftw3.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/core/capture/capture.h"
-#include "renderer/core/settings.h"
+#include "renderer/core/settings/settings.h"
 
 #include <array>
 #include <optional>

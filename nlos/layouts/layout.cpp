@@ -3,7 +3,7 @@
 
 #include "renderer/core/error.h"
 #include "renderer/core/nearest_name.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/core/capture/capture.h"
-#include "renderer/core/json_fwd.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <map>
 #include <optional>

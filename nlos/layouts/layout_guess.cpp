@@ -5,8 +5,8 @@
 #include "nlos/layouts/histogram_evidence.h"
 #include "nlos/layouts/layout_histograms.h"
 #include "renderer/core/error.h"
-#include "renderer/core/json_file.h"
 #include "renderer/core/nearest_name.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <fmt/ranges.h>
 

@@ -2,7 +2,7 @@
 #include "nlos/methods/backprojection.h"
 
 #include "nlos/methods/slabs.h"
-#include "renderer/core/large_memory.h"
+#include "renderer/core/system/large_memory.h"
 
 namespace nlos {
 namespace {

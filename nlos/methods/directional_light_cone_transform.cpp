@@ -9,7 +9,7 @@
 // with a normal towards the wall for each column, at its brightest voxel.
 #include "nlos/fourier/padded_plane.h"
 #include "nlos/methods/light_cone.h"
-#include "renderer/core/large_memory.h"
+#include "renderer/core/system/large_memory.h"
 
 #include <cmath>
 

@@ -9,7 +9,7 @@
 #include "nlos/fourier/even_transform.h"
 #include "nlos/fourier/padded_plane.h"
 #include "nlos/methods/light_cone.h"
-#include "renderer/core/large_memory.h"
+#include "renderer/core/system/large_memory.h"
 
 namespace nlos {
 namespace {

@@ -6,9 +6,9 @@
 #include "renderer/core/capture/capture.h"
 #include "renderer/core/capture/instrument_response.h"
 #include "renderer/core/error.h"
-#include "renderer/core/parallel.h"
 #include "renderer/core/progress.h"
 #include "renderer/core/stopwatch.h"
+#include "renderer/core/system/parallel.h"
 
 #include <algorithm>
 #include <array>

@@ -16,7 +16,7 @@
 #include "nlos/methods/plane_propagator.h"
 #include "nlos/methods/slabs.h"
 #include "nlos/methods/virtual_wave.h"
-#include "renderer/core/large_memory.h"
+#include "renderer/core/system/large_memory.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include "nlos/pictures/panel_drawing.h"
 #include "renderer/core/error.h"
 #include "renderer/core/file_suffix.h"
-#include "renderer/core/output_file.h"
+#include "renderer/core/system/output_file.h"
 
 #include <algorithm>
 #include <filesystem>

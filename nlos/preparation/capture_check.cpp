@@ -7,9 +7,9 @@
 #include "nlos/preparation/histogram_preparation.h"
 #include "nlos/preparation/wall_unit.h"
 #include "renderer/core/capture/sensor_footprint.h"
-#include "renderer/core/json_file.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/settings/json_file.h"
 #include "renderer/core/statistics.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/format.h>
 

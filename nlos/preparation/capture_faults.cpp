@@ -2,8 +2,8 @@
 #include "nlos/preparation/capture_faults.h"
 
 #include "renderer/core/capture/masked_bins.h"
-#include "renderer/core/parallel.h"
 #include "renderer/core/statistics.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 #include "nlos/preparation/first_light.h"
 
 #include "nlos/preparation/wall_frame.h"
-#include "renderer/core/parallel.h"
 #include "renderer/core/statistics.h"
+#include "renderer/core/system/parallel.h"
 
 #include <Eigen/LU>
 

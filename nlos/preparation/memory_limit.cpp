@@ -2,7 +2,7 @@
 #include "nlos/preparation/memory_limit.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/process.h"
+#include "renderer/core/system/process.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include "nlos/preparation/memory_limit.h"
 #include "nlos/preparation/prepared_capture.h"
 #include "renderer/core/error.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/format.h>
 

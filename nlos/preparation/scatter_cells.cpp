@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/preparation/scatter_cells.h"
 
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <algorithm>
 #include <array>

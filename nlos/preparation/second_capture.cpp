@@ -2,8 +2,8 @@
 #include "nlos/preparation/second_capture.h"
 
 #include "nlos/detector/count_sampling.h"
-#include "renderer/core/parallel.h"
 #include "renderer/core/random.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/core/types.h"
 
 #include <algorithm>

@@ -3,9 +3,9 @@
 
 #include "nlos/reconstruction/reconstruct_settings.h"
 #include "nlos/reconstruction/volume.h"
-#include "renderer/core/boxed_json.h"
 #include "renderer/core/depth_map.h"
 #include "renderer/core/mesh.h"
+#include "renderer/core/settings/boxed_json.h"
 
 #include <cstdint>
 #include <string>

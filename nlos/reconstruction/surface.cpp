@@ -4,7 +4,7 @@
 #include "nlos/reconstruction/column_peak.h"
 #include "nlos/reconstruction/depth_sigma.h"
 #include "nlos/reconstruction/surface_probability.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <Eigen/Cholesky>
 

@@ -2,7 +2,7 @@
 #include "nlos/solver/cone_convolution.h"
 
 #include "nlos/fourier/even_transform.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <cmath>
 

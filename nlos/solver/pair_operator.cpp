@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/solver/pair_operator.h"
 
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <algorithm>
 #include <cmath>

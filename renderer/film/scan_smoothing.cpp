@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/film/scan_smoothing.h"
 
-#include "renderer/core/parallel.h"
 #include "renderer/core/statistics.h"
+#include "renderer/core/system/parallel.h"
 
 #include <Eigen/Core>
 

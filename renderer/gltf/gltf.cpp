@@ -2,7 +2,7 @@
 #include "renderer/gltf/gltf.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/process.h"
+#include "renderer/core/system/process.h"
 #include "renderer/gltf/gltf_document.h"
 #include "renderer/gltf/gltf_features.h"
 #include "renderer/gltf/gltf_material.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/gltf/gltf_document.h"
 #include "renderer/gltf/gltf_features.h"
 

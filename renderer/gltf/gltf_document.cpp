@@ -2,8 +2,8 @@
 #include "renderer/gltf/gltf_document.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/json_file.h"
 #include "renderer/core/mapped_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "renderer/gltf/gltf_features.h"
 
 #include <tiny_gltf.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <span>
 #include <string>

@@ -2,7 +2,7 @@
 #include "renderer/gltf/gltf_material.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/gltf/gltf_features.h"
 
 #include <fmt/core.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/error.h"
-#include "renderer/core/output_file.h"
+#include "renderer/core/system/output_file.h"
 #include "renderer/gltf/gltf.h"
 #include "renderer/gltf/gltf_material.h"
 

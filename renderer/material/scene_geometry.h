@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/core/mesh.h"
-#include "renderer/core/settings.h"
+#include "renderer/core/settings/settings.h"
 #include "renderer/core/types.h"
 #include "renderer/material/material.h"
 

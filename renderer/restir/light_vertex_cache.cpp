@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/restir/light_vertex_cache.h"
 
-#include "renderer/core/parallel.h"
 #include "renderer/core/sampling.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/path/light_subpaths.h"
 
 #include <algorithm>

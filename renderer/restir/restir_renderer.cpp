@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/restir/restir_renderer.h"
 
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/gltf/gltf.h"
 #include "renderer/mesh_file/mesh_file.h"
 #include "renderer/scene/measurement.h"

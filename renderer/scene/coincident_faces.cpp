@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene/coincident_faces.h"
 
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/scene/box_tree.h"
 #include "renderer/scene/convex_polygon.h"
 #include "renderer/scene/ray_caster.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene/ground_truth.h"
 
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 namespace renderer {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/json_fwd.h"
-#include "renderer/core/settings.h"
+#include "renderer/core/settings/json_fwd.h"
+#include "renderer/core/settings/settings.h"
 #include "renderer/material/scene_geometry.h"
 #include "renderer/mesh_file/mesh_file.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene/scene_file.h"
 
-#include "renderer/core/process.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/process.h"
 #include "renderer/scene/measurement.h"
 #include "renderer/scene/sensor_settings.h"
 

@@ -4,7 +4,7 @@
 #include "renderer/core/capture/capture.h"
 #include "renderer/core/capture/relay_wall.h"
 #include "renderer/core/capture/sensor_footprint.h"
-#include "renderer/core/json_fwd.h"
+#include "renderer/core/settings/json_fwd.h"
 #include "renderer/scene/object_table.h"
 #include "renderer/settings/render_settings.h"
 

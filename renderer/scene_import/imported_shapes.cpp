@@ -2,7 +2,7 @@
 #include "renderer/scene_import/imported_shapes.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/process.h"
+#include "renderer/core/system/process.h"
 #include "renderer/mesh_file/mesh_file.h"
 
 #include <fmt/core.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene_import/key_reader.h"
 
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 namespace renderer {
 

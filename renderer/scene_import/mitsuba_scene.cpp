@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/error.h"
 #include "renderer/core/nearest_name.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/scene_import/foreign_file.h"
 #include "renderer/scene_import/imported_shapes.h"
 #include "renderer/scene_import/key_reader.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/error.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/scene_import/foreign_file.h"
 
 #include <fmt/core.h>

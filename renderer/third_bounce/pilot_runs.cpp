@@ -2,9 +2,9 @@
 #include "renderer/third_bounce/pilot_runs.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/process.h"
 #include "renderer/core/statistics.h"
 #include "renderer/core/stopwatch.h"
+#include "renderer/core/system/process.h"
 #include "renderer/scene/coinciding_points.h"
 
 #include <algorithm>

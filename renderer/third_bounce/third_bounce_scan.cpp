@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/third_bounce/third_bounce_scan.h"
 
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/scene/coinciding_points.h"
 #include "renderer/third_bounce/third_bounce_pairs.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Wrong usage, scenes and files: exit code 2, one line that says what is wrong, older results kept.
 #include "nlos/formats/capture_file.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "tests/support/command_line.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `nlos render` and what it makes of a scene: meshes, scenes of other programs, axes, images.
 #include "nlos/formats/capture_file.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "tests/support/command_line.h"
 
 #include <gtest/gtest.h>
@@ -98,7 +98,8 @@ TEST_F(CommandLine, TimeAxesCanBeChosenByTheProgram) {
     EXPECT_EQ(render.err, "");
     const core::Capture capture = nlos::read_capture(file("auto.h5"));
     EXPECT_GT((*capture.scene_info)["light"]["share_in_axis"].get<double>(), 0.999);
-    EXPECT_EQ((*capture.scene_info)["settings"]["time_axis"]["num_bins"], capture.time_axis.num_bins);
+    EXPECT_EQ((*capture.scene_info)["settings"]["time_axis"]["num_bins"],
+              capture.time_axis.num_bins);
     EXPECT_NE(run("info " + scene).out.find("(auto)"), std::string::npos);
     EXPECT_EQ(run("render scenes/letter/scene.json -o " + file("set.h5") +
                   " --samples 4 --set time_axis=auto scan.sensing_points=[4,4]")

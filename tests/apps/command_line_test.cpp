@@ -5,7 +5,7 @@
 #include "apps/commands.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Names, values and files that mean harm: one printable line, exit code 2, soon.
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "tests/support/command_line.h"
 
 #include <sys/stat.h>

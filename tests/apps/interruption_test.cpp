@@ -2,7 +2,7 @@
 // Signals, limits and closed streams: nothing older is lost, nothing half is left, one line says
 // why.
 #include "nlos/formats/capture_file.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "tests/support/command_line.h"
 
 #include <fcntl.h>

@@ -3,7 +3,7 @@
 // says what is allowed.
 #include "nlos/formats/capture_file.h"
 #include "nlos/pictures/image_layout.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "tests/support/command_line.h"
 
 #include <gtest/gtest.h>

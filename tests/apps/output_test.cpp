@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What is printed beside results: --quiet, --json, progress, and the nearest of known names.
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "tests/support/command_line.h"
 
 #include <gtest/gtest.h>

@@ -11,7 +11,7 @@
 #include "calib/fit.h"
 #include "nlos/detector/detector.h"
 #include "nlos/formats/capture_file.h"
-#include "renderer/core/settings_help.h"
+#include "renderer/core/settings/settings_help.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/scene/scene_file.h"
 #include "tests/support/command_line.h"

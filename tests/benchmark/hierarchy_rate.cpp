@@ -2,8 +2,8 @@
 // What a draw of an ellipsoidal connection costs, against a shadow ray on the same scene, one
 // thread, for gates of several widths.
 //   hierarchy_rate SCENE.json [DRAWS] [REPEATS]
-#include "renderer/core/parallel.h"
-#include "renderer/core/process.h"
+#include "renderer/core/system/parallel.h"
+#include "renderer/core/system/process.h"
 #include "renderer/ellipsoidal/connection_technique.h"
 #include "renderer/scene/scene_file.h"
 

@@ -5,8 +5,8 @@
 // them and reading the answers; and the same rays in packets of one wall point each, since packets
 // of neighbouring points, which third_bounce makes, are faster for Embree, too.
 //   ray_rate SCENE.json [SAMPLES] [MAX_BOUNCES] [REPEATS] [METHOD]
-#include "renderer/core/parallel.h"
-#include "renderer/core/process.h"
+#include "renderer/core/system/parallel.h"
+#include "renderer/core/system/process.h"
 #include "renderer/render.h"
 #include "renderer/scene/embree.h"
 #include "renderer/scene/scene_file.h"

@@ -3,7 +3,7 @@
 // wrong one is printed:
 //     shift_stress <number of shifts>
 // Ends with 1 when one was accepted wrongly.
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 #include "tests/support/hard_shift_cases.h"
 
 #include <fmt/core.h>

@@ -3,7 +3,7 @@
 #include "calib/calibrate.h"
 
 #include "calib/fit.h"
-#include "renderer/core/output_file.h"
+#include "renderer/core/system/output_file.h"
 #include "tests/calib/setup/simulated_setup.h"
 #include "tests/support/error_message.h"
 #include "tests/support/fit_examples.h"

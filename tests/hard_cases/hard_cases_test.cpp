@@ -2,7 +2,7 @@
 // Every row of the catalogue, one test each. With `--report FILE.json` the measured table is
 // written as well.
 #include "apps/version.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "tests/hard_cases/hard_case.h"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 #include "nlos/preparation/wall_frame.h"
 #include "renderer/core/nearest_neighbours.h"
 #include "renderer/core/random.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/render.h"
 #include "tests/hard_cases/cases.h"
 #include "tests/hard_cases/extended_precision.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nlos/methods/methods.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <fmt/format.h>
 

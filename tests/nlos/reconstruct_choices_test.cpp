@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What reconstruct() fills in: bins to merge, how light falls off, which surface has the depth.
 #include "nlos/reconstruct.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "tests/nlos/methods/confocal_scene.h"
 
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruct.h"
 
-#include "renderer/core/parallel.h"
-#include "renderer/core/process.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/parallel.h"
+#include "renderer/core/system/process.h"
 #include "tests/nlos/every_method.h"
 #include "tests/nlos/methods/confocal_scene.h"
 #include "tests/support/error_message.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruct.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 #include "tests/nlos/methods/confocal_scene.h"
 #include "tests/nlos/methods/peak_fit.h"
 #include "tests/nlos/reconstruction_law.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Path velocities against closed forms and against moved scenes.
-#include "renderer/core/parallel.h"
 #include "renderer/core/random.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/film/time_gate.h"
 #include "tests/renderer/doppler_scenes.h"
 #include "tests/support/error_message.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/generated_scenes.h"
 
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "renderer/gltf/gltf.h"
 #include "tests/renderer/gltf/gltf_files.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/core/capture/capture.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 namespace test_support {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tests/support/occluder_scenes.h"
 
-#include "renderer/core/parallel.h"
 #include "renderer/core/random.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/core.h>
 

@@ -2,7 +2,7 @@
 #include "apps/bench/field/bin_agreement.h"
 
 #include "apps/bench/statistics.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <cmath>
 #include <numeric>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/core/capture/transient.h"
-#include "renderer/core/json_fwd.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <array>
 #include <cstddef>

@@ -4,7 +4,7 @@
 #include "apps/bench/field/peak_depths.h"
 #include "apps/bench/field/reconstruction_table.h"
 #include "nlos/formats/capture_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/core/statistics.h"
 
 #include <fmt/core.h>

@@ -2,11 +2,11 @@
 #include "apps/bench/field/contenders.h"
 
 #include "apps/run_program.h"
-#include "renderer/core/data_folder.h"
 #include "renderer/core/error.h"
-#include "renderer/core/json_file.h"
-#include "renderer/core/output_file.h"
-#include "renderer/core/process.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/system/data_folder.h"
+#include "renderer/core/system/output_file.h"
+#include "renderer/core/system/process.h"
 
 #include <fmt/core.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/bench/field/measured_process.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <map>
 #include <set>

@@ -8,7 +8,7 @@
 #include "apps/report/report.h"
 #include "apps/terminal.h"
 #include "nlos/plots/plot.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>

@@ -10,7 +10,7 @@
 #include "nlos/formats/volume_file.h"
 #include "nlos/methods/methods.h"
 #include "nlos/pictures/pictures.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "renderer/core/statistics.h"
 #include "renderer/scene/ground_truth.h"
 

@@ -3,8 +3,8 @@
 
 #include "apps/bench/field/contenders.h"
 #include "apps/bench/output.h"
-#include "renderer/core/json_fwd.h"
 #include "renderer/core/progress.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <optional>
 #include <string>

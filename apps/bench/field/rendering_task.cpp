@@ -7,7 +7,7 @@
 #include "nlos/containers/array_reader.h"
 #include "nlos/formats/capture_file.h"
 #include "renderer/core/mesh_formats/ply_writer.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/scene/load_geometry.h"
 
 #include <fmt/core.h>

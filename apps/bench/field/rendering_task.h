@@ -3,7 +3,7 @@
 
 #include "apps/bench/field/rendering_table.h"
 #include "apps/bench/scene.h"
-#include "renderer/core/json_fwd.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <array>
 #include <optional>

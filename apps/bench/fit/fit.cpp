@@ -3,9 +3,9 @@
 
 #include "apps/bench/command.h"
 #include "apps/bench/fit/fit_trials.h"
-#include "renderer/core/parallel.h"
-#include "renderer/core/process.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/parallel.h"
+#include "renderer/core/system/process.h"
 #include "renderer/render.h"
 
 #include <fmt/core.h>

@@ -2,7 +2,7 @@
 #include "apps/bench/fit/fit.h"
 #include "apps/bench/fit/fit_trials.h"
 #include "calib/forward/forward_model.h"
-#include "renderer/core/process.h"
+#include "renderer/core/system/process.h"
 
 #include <fmt/core.h>
 

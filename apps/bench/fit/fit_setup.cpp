@@ -2,7 +2,7 @@
 #include "apps/bench/fit/fit.h"
 #include "calib/calibrate.h"
 #include "nlos/detector/count_sampling.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/core.h>
 

@@ -2,9 +2,9 @@
 #include "apps/bench/fit/fit_trials.h"
 
 #include "nlos/detector/detector.h"
-#include "renderer/core/parallel.h"
 #include "renderer/core/random.h"
 #include "renderer/core/sampling.h"
+#include "renderer/core/system/parallel.h"
 
 #include <algorithm>
 #include <cmath>

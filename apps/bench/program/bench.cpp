@@ -7,8 +7,8 @@
 #include "apps/bench/render/render.h"
 #include "apps/outcome.h"
 #include "apps/terminal.h"
-#include "renderer/core/json_file.h"
-#include "renderer/core/output_file.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/system/output_file.h"
 
 #include <filesystem>
 

@@ -2,7 +2,7 @@
 #include "apps/bench/program/bench.h"
 #include "apps/commands.h"
 #include "apps/program.h"
-#include "renderer/core/large_memory.h"
+#include "renderer/core/system/large_memory.h"
 
 #include <string>
 #include <string_view>

@@ -3,7 +3,7 @@
 #include "apps/bench/reconstruct/reconstruct.h"
 #include "apps/bench/reconstruct/reconstruct_trials.h"
 #include "nlos/plots/plot.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "renderer/core/statistics.h"
 #include "renderer/scene/ground_truth.h"
 

@@ -5,8 +5,8 @@
 #include "apps/scene_truth.h"
 #include "nlos/compare/compare.h"
 #include "nlos/detector/detector.h"
-#include "renderer/core/parallel.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/render.h"
 
 #include <fmt/format.h>

@@ -6,7 +6,7 @@
 #include "nlos/compare/compare.h"
 #include "nlos/detector/detector.h"
 #include "nlos/methods/methods.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <fmt/core.h>
 

@@ -2,8 +2,8 @@
 #include "apps/bench/reconstruct/reconstruct.h"
 
 #include "apps/bench/command.h"
-#include "renderer/core/parallel.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/parallel.h"
 
 namespace apps {
 namespace {

@@ -9,8 +9,8 @@
 #include "nlos/methods/methods.h"
 #include "renderer/core/capture/capture.h"
 #include "renderer/core/depth_map.h"
-#include "renderer/core/json_file.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/scene/scene_file.h"
 
 #include <fmt/core.h>

@@ -3,7 +3,7 @@
 #include "apps/bench/reconstruct/reconstruct.h"
 #include "apps/bench/reconstruct/reconstruct_trials.h"
 #include "apps/bench/scene.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "renderer/core/statistics.h"
 
 #include <fmt/core.h>

@@ -4,9 +4,9 @@
 #include "apps/bench/scene.h"
 #include "apps/shapes/shapes.h"
 #include "nlos/detector/detector.h"
-#include "renderer/core/process.h"
 #include "renderer/core/random.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/process.h"
 
 #include <cmath>
 #include <cstdint>

@@ -3,7 +3,7 @@
 #include "apps/bench/reconstruct/reconstruct.h"
 #include "apps/bench/reconstruct/reconstruct_trials.h"
 #include "renderer/core/random.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/scene/ground_truth.h"
 
 #include <fmt/format.h>

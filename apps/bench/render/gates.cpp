@@ -3,9 +3,9 @@
 
 #include "apps/bench/scene.h"
 #include "apps/bench/statistics.h"
-#include "renderer/core/parallel.h"
-#include "renderer/core/process.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/parallel.h"
+#include "renderer/core/system/process.h"
 
 #include <algorithm>
 #include <array>

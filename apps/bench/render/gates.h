@@ -2,8 +2,8 @@
 #pragma once
 
 #include "apps/bench/output.h"
-#include "renderer/core/json_fwd.h"
 #include "renderer/core/progress.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <string>
 #include <vector>

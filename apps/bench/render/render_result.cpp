@@ -3,7 +3,7 @@
 #include "apps/bench/render/gates.h"
 #include "apps/bench/render/render.h"
 #include "apps/bench/render/third_bounce.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <fmt/core.h>
 

@@ -3,8 +3,8 @@
 #include "apps/bench/render/render.h"
 #include "apps/bench/statistics.h"
 #include "apps/shapes/shapes.h"
-#include "renderer/core/parallel.h"
-#include "renderer/core/process.h"
+#include "renderer/core/system/parallel.h"
+#include "renderer/core/system/process.h"
 #include "renderer/render.h"
 #include "renderer/scene/scene_file.h"
 

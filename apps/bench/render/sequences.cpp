@@ -2,9 +2,9 @@
 #include "apps/bench/command.h"
 #include "apps/bench/scene.h"
 #include "apps/bench/statistics.h"
-#include "renderer/core/json_file.h"
-#include "renderer/core/parallel.h"
-#include "renderer/core/process.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/system/parallel.h"
+#include "renderer/core/system/process.h"
 #include "renderer/frame_sequence.h"
 #include "renderer/render.h"
 

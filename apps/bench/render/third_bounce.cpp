@@ -5,11 +5,11 @@
 #include "apps/bench/output.h"
 #include "apps/bench/scene.h"
 #include "apps/shapes/shapes.h"
-#include "renderer/core/parallel.h"
-#include "renderer/core/process.h"
 #include "renderer/core/random.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/core/statistics.h"
+#include "renderer/core/system/parallel.h"
+#include "renderer/core/system/process.h"
 #include "renderer/third_bounce/third_bounce.h"
 
 #include <fmt/core.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/json_fwd.h"
 #include "renderer/core/progress.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <string>
 #include <vector>

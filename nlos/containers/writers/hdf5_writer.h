@@ -5,7 +5,7 @@
 #include "nlos/containers/shape.h"
 #include "nlos/containers/stored_number.h"
 #include "nlos/containers/writers/hdf5_storage.h"
-#include "renderer/core/output_file.h"
+#include "renderer/core/system/output_file.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -2,7 +2,7 @@
 #include "nlos/containers/writers/mat5_writer.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/output_file.h"
+#include "renderer/core/system/output_file.h"
 
 #include <fmt/core.h>
 #include <matio.h>

@@ -3,7 +3,7 @@
 
 #include "nlos/containers/shape.h"
 #include "nlos/containers/stored_number.h"
-#include "renderer/core/output_file.h"
+#include "renderer/core/system/output_file.h"
 
 #include <functional>
 #include <memory>

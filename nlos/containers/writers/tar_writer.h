@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/output_file.h"
+#include "renderer/core/system/output_file.h"
 
 #include <fstream>
 #include <string>

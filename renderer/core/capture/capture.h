@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/boxed_json.h"
 #include "renderer/core/capture/observed_bins.h"
 #include "renderer/core/capture/scan.h"
 #include "renderer/core/capture/time_axis.h"
 #include "renderer/core/capture/transient.h"
 #include "renderer/core/capture/velocity_axis.h"
-#include "renderer/core/settings.h"
+#include "renderer/core/settings/boxed_json.h"
+#include "renderer/core/settings/settings.h"
 #include "renderer/core/types.h"
 
 #include <optional>

@@ -2,8 +2,8 @@
 #include "renderer/core/capture/instrument_response.h"
 
 #include "renderer/core/mapped_file.h"
-#include "renderer/core/parallel.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/parallel.h"
 
 #include <fmt/core.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/settings.h"
+#include "renderer/core/settings/settings.h"
 #include "renderer/core/types.h"
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/capture/recorded_detector.h"
 
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <fmt/format.h>
 

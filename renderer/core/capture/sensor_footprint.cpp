@@ -2,7 +2,7 @@
 #include "renderer/core/capture/sensor_footprint.h"
 
 #include "renderer/core/capture/capture.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <fmt/core.h>
 

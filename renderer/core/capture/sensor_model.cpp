@@ -2,7 +2,7 @@
 #include "renderer/core/capture/sensor_model.h"
 
 #include "renderer/core/nearest_name.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "renderer/core/capture/time_axis.h"
-#include "renderer/core/json_fwd.h"
-#include "renderer/core/settings.h"
+#include "renderer/core/settings/json_fwd.h"
+#include "renderer/core/settings/settings.h"
 #include "renderer/core/types.h"
 
 #include <array>

@@ -5,7 +5,7 @@
 #include "renderer/core/file_suffix.h"
 #include "renderer/core/mapped_file.h"
 #include "renderer/core/nearest_name.h"
-#include "renderer/core/process.h"
+#include "renderer/core/system/process.h"
 
 #include <filesystem>
 

@@ -2,8 +2,8 @@
 #include "renderer/core/mesh_formats/ply_writer.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/output_file.h"
 #include "renderer/core/precision.h"
+#include "renderer/core/system/output_file.h"
 
 #include <algorithm>
 #include <bit>

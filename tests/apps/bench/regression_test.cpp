@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/bench/regression.h"
 
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <gtest/gtest.h>
 

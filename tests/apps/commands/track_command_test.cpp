@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // nlos track as its users call it: frames from files and as lines, and what it refuses.
 #include "nlos/formats/capture_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "tests/apps/commands/simulated_walk.h"
 #include "tests/support/command_line.h"
 #include "tests/support/error_message.h"

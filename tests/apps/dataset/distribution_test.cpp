@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/distribution.h"
 
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "tests/support/error_message.h"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 
 #include "apps/dataset/generate.h"
 #include "nlos/formats/capture_arrays.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "renderer/render.h"
 #include "tests/apps/dataset/tiny_recipe.h"
 #include "tests/support/temporary_folder.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/recipe.h"
 
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "tests/apps/dataset/tiny_recipe.h"
 #include "tests/support/error_message.h"
 

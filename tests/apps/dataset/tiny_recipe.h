@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/dataset/recipe.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"
 

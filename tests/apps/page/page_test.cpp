@@ -2,7 +2,7 @@
 // What a page's script decodes must be what was measured and found, to the steps of its codes.
 #include "apps/page/page_views.h"
 #include "nlos/preparation/wall_frame.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "tests/support/example_capture.h"
 #include "tests/support/example_volume.h"
 

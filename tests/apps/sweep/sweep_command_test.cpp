@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The sweep as its users call it.
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "tests/apps/sweep/sweep_folder.h"
 
 #include <algorithm>

@@ -3,8 +3,8 @@
 
 #include "apps/sweep/sweep.h"
 #include "apps/sweep/sweep_summary.h"
-#include "renderer/core/json_file.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/system/parallel.h"
 #include "tests/support/command_line.h"
 
 #include <fmt/core.h>

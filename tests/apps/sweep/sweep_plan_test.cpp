@@ -2,7 +2,7 @@
 // The runs that a sweep file stands for, and what is refused before any of them.
 #include "apps/sweep/sweep_plan.h"
 
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "tests/apps/sweep/sweep_folder.h"
 #include "tests/support/error_message.h"
 

@@ -2,8 +2,8 @@
 // Runs of a sweep: the same whoever does them, kept, resumed, and gathered at the end.
 #include "apps/sweep/sweep.h"
 
-#include "renderer/core/parallel.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
+#include "renderer/core/system/parallel.h"
 #include "tests/apps/sweep/sweep_folder.h"
 #include "tests/support/error_message.h"
 

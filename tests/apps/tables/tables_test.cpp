@@ -2,7 +2,7 @@
 #include "apps/tables/tables.h"
 
 #include "apps/bench/output.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <gtest/gtest.h>
 

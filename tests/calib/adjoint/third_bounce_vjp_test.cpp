@@ -2,7 +2,7 @@
 // Third bounces of meshes against the renderer, and what the pullback takes and refuses.
 #include "calib/third_bounce_vjp.h"
 
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/render.h"
 #include "tests/support/error_message.h"
 #include "tests/support/gradient_case.h"

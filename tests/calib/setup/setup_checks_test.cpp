@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Calibrations of what is not as its files say: never values that look sure; silence on sound data.
 #include "calib/calibrate.h"
-#include "renderer/core/output_file.h"
+#include "renderer/core/system/output_file.h"
 #include "tests/calib/setup/simulated_setup.h"
 #include "tests/support/error_message.h"
 

@@ -3,7 +3,7 @@
 
 #include "nlos/detector/count_sampling.h"
 #include "nlos/detector/dead_time.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
 #include "tests/support/statistics.h"

@@ -3,7 +3,7 @@
 #include "nlos/containers/exr_table.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/preparation/gated_capture.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "tests/nlos/formats/old_hdf5_file.h"
 #include "tests/nlos/formats/ytal_capture_file.h"
 #include "tests/support/error_message.h"

@@ -3,8 +3,8 @@
 #include "nlos/containers/writers/npz_writer.h"
 
 #include "nlos/formats/capture_file.h"
-#include "renderer/core/json_file.h"
-#include "renderer/core/output_file.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/system/output_file.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
 #include "tests/support/file_bytes.h"

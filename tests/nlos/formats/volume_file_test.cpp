@@ -3,7 +3,7 @@
 
 #include "nlos/containers/array_reader.h"
 #include "nlos/formats/capture_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
 #include "tests/support/example_reconstruction.h"

@@ -2,7 +2,7 @@
 // Velocities in captures of the HDF5 layout of y-tal.
 #include "nlos/containers/array_reader.h"
 #include "nlos/formats/capture_file.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "tests/nlos/formats/ytal_capture_file.h"
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"

@@ -6,7 +6,7 @@
 #include "nlos/layouts/layout_guess.h"
 #include "nlos/layouts/layout_points.h"
 #include "renderer/core/capture/recorded_detector.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "tests/nlos/formats/mat_writing.h"
 #include "tests/support/error_message.h"
 #include "tests/support/file_bytes.h"

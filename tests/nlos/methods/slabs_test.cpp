@@ -2,7 +2,7 @@
 #include "nlos/methods/slabs.h"
 
 #include "nlos/methods/methods.h"
-#include "renderer/core/process.h"
+#include "renderer/core/system/process.h"
 #include "tests/nlos/methods/confocal_scene.h"
 #include "tests/support/statistics.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/preparation/second_capture.h"
 
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 #include "tests/support/example_capture.h"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 #include "nlos/preparation/capture_correction.h"
 #include "nlos/preparation/histogram_sample.h"
 #include "nlos/preparation/scatter_fit.h"
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 #include "tests/nlos/methods/confocal_scene.h"
 
 #include <gtest/gtest.h>

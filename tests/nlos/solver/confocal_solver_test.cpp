@@ -2,7 +2,7 @@
 #include "nlos/solver/confocal_solver.h"
 
 #include "nlos/reconstruct.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "tests/nlos/methods/confocal_scene.h"
 
 #include <gtest/gtest.h>

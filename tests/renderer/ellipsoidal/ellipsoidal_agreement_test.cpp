@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The ellipsoidal estimator against the others, bin by bin, on every scene of the repository.
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/ellipsoidal_render.h"
 #include "renderer/scene/scene_file.h"
 #include "tests/support/statistics.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/json_file.h"
 #include "renderer/core/random.h"
+#include "renderer/core/settings/json_file.h"
 #include "tests/renderer/gltf/gltf_files.h"
 #include "tests/support/error_message.h"
 

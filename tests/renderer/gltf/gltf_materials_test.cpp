@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Materials and textures of glTF files.
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "renderer/gltf/gltf.h"
 #include "tests/renderer/gltf/gltf_files.h"
 

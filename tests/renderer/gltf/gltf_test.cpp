@@ -2,7 +2,7 @@
 // Geometry, nodes, extras and cameras of glTF files.
 #include "renderer/gltf/gltf.h"
 
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "tests/renderer/gltf/gltf_files.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Images of a pinhole camera against closed forms and against scans of the same paths.
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/path/sensor_pairs.h"
 #include "tests/support/error_message.h"
 #include "tests/support/statistics.h"

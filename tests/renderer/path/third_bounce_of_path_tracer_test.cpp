@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The path tracer's third bounce against closed forms and brute force, in absolute units.
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/render.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"

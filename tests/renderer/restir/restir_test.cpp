@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Resampled paths against path tracing: same means whatever is reused. Neighbours share their
 // noise, so the spread is taken from independent renders, not from variances of single values.
-#include "renderer/core/parallel.h"
 #include "renderer/core/random.h"
+#include "renderer/core/system/parallel.h"
 #include "renderer/frame_sequence.h"
 #include "renderer/restir_render.h"
 #include "tests/support/error_message.h"

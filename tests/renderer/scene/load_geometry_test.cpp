@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene/load_geometry.h"
 
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "renderer/gltf/gltf.h"
 #include "renderer/render.h"
 #include "tests/renderer/mesh_file/mesh_texts.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Scans of the pattern sensor in scene.json.
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/scene/scene_file.h"
 #include "tests/support/error_message.h"
 #include "tests/support/file_bytes.h"

@@ -2,8 +2,8 @@
 #include "renderer/scene_import/foreign_file.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/json_file.h"
 #include "renderer/core/random.h"
+#include "renderer/core/settings/json_file.h"
 #include "tests/support/error_message.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"

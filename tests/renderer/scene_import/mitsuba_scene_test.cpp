@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/error.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "tests/renderer/scene_import/foreign_scenes.h"
 #include "tests/support/error_message.h"
 

@@ -2,8 +2,8 @@
 // The deterministic third bounce against brute force, exact arcs, and itself moved about.
 #include "renderer/third_bounce/third_bounce.h"
 
-#include "renderer/core/parallel.h"
 #include "renderer/core/random.h"
+#include "renderer/core/system/parallel.h"
 #include "tests/renderer/third_bounce/third_bounce_fixture.h"
 #include "tests/support/error_message.h"
 #include "tests/support/exact_arcs.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What `nlos bench long_range` measures, of one capture.
 #include "apps/bench/reconstruct/reconstruct.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // What `nlos bench render --part accuracy` measures, on fewer scenes.
 #include "apps/bench/render/third_bounce.h"
 #include "apps/shapes/shapes.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <gtest/gtest.h>
 

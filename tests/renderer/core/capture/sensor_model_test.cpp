@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/capture/sensor_model.h"
 
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 #include "tests/support/error_message.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include "renderer/core/mapped_file.h"
 #include "renderer/core/nearest_name.h"
-#include "renderer/core/settings.h"
+#include "renderer/core/settings/settings.h"
 
 #include <fmt/core.h>
 

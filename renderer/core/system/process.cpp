@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/process.h"
+#include "renderer/core/system/process.h"
 
 #include "renderer/core/error.h"
 

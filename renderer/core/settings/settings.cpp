@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/nearest_name.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>

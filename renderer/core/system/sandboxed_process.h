@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/core/error.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
 #include <chrono>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/boxed_json.h"
+#include "renderer/core/settings/boxed_json.h"
 
 #include <nlohmann/json.hpp>
 

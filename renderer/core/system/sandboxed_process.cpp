@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/sandboxed_process.h"
+#include "renderer/core/system/sandboxed_process.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/json_file.h"
-#include "renderer/core/process.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/system/process.h"
 
 #include <fcntl.h>
 #include <poll.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/json_file.h"
-#include "renderer/core/settings.h"
+#include "renderer/core/settings/json_file.h"
+#include "renderer/core/settings/settings.h"
 
 #include <nlohmann/json.hpp>
 

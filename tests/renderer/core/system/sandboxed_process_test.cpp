@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/sandboxed_process.h"
+#include "renderer/core/system/sandboxed_process.h"
 
 #include "renderer/core/error.h"
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 #include "tests/support/error_message.h"
 
 #include <gtest/gtest.h>

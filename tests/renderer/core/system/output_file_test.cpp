@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/output_file.h"
+#include "renderer/core/system/output_file.h"
 
 #include "renderer/core/error.h"
 #include "tests/support/file_bytes.h"

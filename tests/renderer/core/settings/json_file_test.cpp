@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/json_file.h"
+#include "renderer/core/settings/json_file.h"
 
-#include "renderer/core/settings.h"
+#include "renderer/core/settings/settings.h"
 #include "tests/support/error_message.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/settings_help.h"
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_help.h"
+#include "renderer/core/settings/settings_json.h"
 #include "tests/support/error_message.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temporary_folder.h"

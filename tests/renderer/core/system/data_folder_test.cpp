@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/data_folder.h"
+#include "renderer/core/system/data_folder.h"
 
 #include "renderer/core/error.h"
 

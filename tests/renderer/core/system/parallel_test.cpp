@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/settings_json.h"
+#include "renderer/core/settings/settings_json.h"
 
 namespace core {
 

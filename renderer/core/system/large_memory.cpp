@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/core/large_memory.h"
+#include "renderer/core/system/large_memory.h"
 
-#include "renderer/core/parallel.h"
+#include "renderer/core/system/parallel.h"
 
 #include <sys/mman.h>
 #ifdef __GLIBC__
