@@ -43,7 +43,7 @@ ProgressBar::ProgressBar(std::string title)
       is_bar_(can_redraw_lines()),
       start_(Clock::now()),
       stage_start_(start_),
-      share_start_(start_),
+      fraction_start_(start_),
       last_shown_(start_) {
     if (output_settings().quiet) return;
     clock_ = std::thread([this] {
@@ -67,7 +67,9 @@ core::Progress ProgressBar::progress() {
     progress.begin_stage = [this](int number, int count, const std::string& name) {
         begin_stage(number, count, name);
     };
-    progress.report = [this](double share, const std::string& detail) { report(share, detail); };
+    progress.report = [this](double fraction, const std::string& detail) {
+        report(fraction, detail);
+    };
     progress.announce = [this](const std::string& text) {
         const std::lock_guard lock(mutex_);
         clear_drawn_line();
@@ -86,18 +88,18 @@ void ProgressBar::begin_stage(int number, int count, const std::string& name) {
     const std::lock_guard lock(mutex_);
     stage_ = fmt::format(", stage {} of {}: {}", number, count, name);
     stage_start_ = Clock::now();
-    share_ = 0.0;
+    fraction_ = 0.0;
     detail_.clear();
     last_tenth_ = -1;
 }
 
-void ProgressBar::report(double share, const std::string& detail) {
+void ProgressBar::report(double fraction, const std::string& detail) {
     const std::lock_guard lock(mutex_);
-    if (share_ <= 0.0 || share < share_) {
-        share_start_ = Clock::now();
-        first_share_ = share;
+    if (fraction_ <= 0.0 || fraction < fraction_) {
+        fraction_start_ = Clock::now();
+        first_fraction_ = fraction;
     }
-    share_ = share;
+    fraction_ = fraction;
     detail_ = detail;
     show_if_due();
 }
@@ -109,38 +111,41 @@ void ProgressBar::show_if_due() {
     const double since_shown = seconds_between(last_shown_, now);
     if (is_bar_) {
         if (since_shown < kSecondsBetweenBars) return;
-        draw_line(fitting(message("{} {}{}", place(), bar(), status())));
+        draw_line(fitting(message("{} {}{}", heading(), bar(), status())));
     } else {
-        const int tenth = static_cast<int>(share_ * 10.0);
+        const int tenth = static_cast<int>(fraction_ * 10.0);
         const bool is_due = last_tenth_ < 0
                                 ? seconds_between(stage_start_, now) >= kSilentSeconds
                                 : tenth > last_tenth_ || since_shown >= kSecondsBetweenLines;
         if (!is_due) return;
-        print_error("{}: {}\n", place(), status());
+        print_error("{}: {}\n", heading(), status());
         last_tenth_ = tenth;
     }
     last_shown_ = now;
 }
 
-std::string ProgressBar::place() const {
+std::string ProgressBar::heading() const {
     return title_ + stage_;
 }
 
 std::string ProgressBar::bar() const {
-    if (share_ <= 0.0) return "";
-    const auto filled = static_cast<std::size_t>(std::clamp(share_, 0.0, 1.0) * double{kBarWidth});
+    if (fraction_ <= 0.0) return "";
+    const auto filled =
+        static_cast<std::size_t>(std::clamp(fraction_, 0.0, 1.0) * double{kBarWidth});
     return "[" + std::string(filled, '#') + std::string(kBarWidth - filled, '.') + "] ";
 }
 
 std::string ProgressBar::status() const {
     const auto now = Clock::now();
-    const double gained = share_ - first_share_;
+    const double gained = fraction_ - first_fraction_;
     const std::string time =
-        gained > 0.0 ? fmt::format("{:.0f} s left",
-                                   seconds_between(share_start_, now) / gained * (1.0 - share_))
-                     : fmt::format("{:.0f} s so far", seconds_between(stage_start_, now));
-    const std::string share = share_ > 0.0 ? fmt::format("{:.0f} %  ", 100.0 * share_) : "";
-    return share + (detail_.empty() ? "" : detail_ + "  ") + time;
+        gained > 0.0
+            ? fmt::format("{:.0f} s left",
+                          seconds_between(fraction_start_, now) / gained * (1.0 - fraction_))
+            : fmt::format("{:.0f} s so far", seconds_between(stage_start_, now));
+    const std::string fraction =
+        fraction_ > 0.0 ? fmt::format("{:.0f} %  ", 100.0 * fraction_) : "";
+    return fraction + (detail_.empty() ? "" : detail_ + "  ") + time;
 }
 
 }  // namespace apps

@@ -11,10 +11,10 @@
 
 namespace apps {
 
-/// Shows the progress of one job on standard error: its stage, and of that the share, the rate and
-/// the time left, or how long it has taken so far where nobody can say more. On a terminal that is
-/// a bar, else a line per 10 % and per half minute. Jobs under a second stay silent, and all with
-/// --quiet.
+/// Shows the progress of one job on standard error: its stage, and of that the fraction, the rate
+/// and the time left, or how long it has taken so far where nobody can say more. On a terminal that
+/// is a bar, else a line per 10 % and per half minute. Jobs under a second stay silent, and all
+/// with --quiet.
 class ProgressBar {
  public:
     explicit ProgressBar(std::string title);
@@ -29,11 +29,11 @@ class ProgressBar {
     using Clock = std::chrono::steady_clock;
 
     void begin_stage(int number, int count, const std::string& name);
-    void report(double share, const std::string& detail);
+    void report(double fraction, const std::string& detail);
     void show_if_due();
-    std::string place() const;   ///< job and stage
-    std::string bar() const;     ///< empty while the share is not known
-    std::string status() const;  ///< share, detail, time
+    std::string heading() const;  ///< job and stage
+    std::string bar() const;      ///< empty while the fraction is not known
+    std::string status() const;   ///< fraction, detail, time
 
     std::string title_;
     bool is_bar_;
@@ -42,10 +42,11 @@ class ProgressBar {
     std::mutex mutex_;  ///< of what stands below
     std::string stage_;
     std::string detail_;
-    double share_ = 0.0;
+    double fraction_ = 0.0;
     Clock::time_point stage_start_;
-    Clock::time_point share_start_;  ///< when the share was first_share_, the first that was known
-    double first_share_ = 0.0;
+    Clock::time_point
+        fraction_start_;  ///< when the fraction was first_fraction_, the first that was known
+    double first_fraction_ = 0.0;
     Clock::time_point last_shown_;
     int last_tenth_ = -1;  ///< of a stage; -1: nothing of it was shown yet
     bool is_over_ = false;

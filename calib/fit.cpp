@@ -87,10 +87,11 @@ class SolveSeries {
                int max_iterations,
                FitCandidate& candidate,
                FitCourse& course) {
-        const double share = static_cast<double>(num_done_) /
-                             static_cast<double>(std::max<std::size_t>(num_solves_, num_done_ + 1));
+        const double fraction =
+            static_cast<double>(num_done_) /
+            static_cast<double>(std::max<std::size_t>(num_solves_, num_done_ + 1));
         const auto report = [&](int iterations) {
-            progress_.update(share, fmt::format("{}, iteration {}", candidate.name, iterations));
+            progress_.update(fraction, fmt::format("{}, iteration {}", candidate.name, iterations));
         };
         candidate.summary = driver_.solve(stage, candidate.state, max_iterations, report);
         course.iterations += candidate.summary.iterations;
@@ -264,7 +265,7 @@ void warn_of_ambiguity(const FitDriver& driver,
         if (excess > kTellable || !is_other) continue;
         known.push_back(other.state);
         result.warnings.push_back(fmt::format(
-            "the data hardly tell this from another pose ({}; deviance {:.1f} more): the stated "
+            "the data hardly tell this from another pose ({}; deviance {:.1f} more): the reported "
             "errors hold for this one alone",
             other.name,
             excess));
@@ -288,10 +289,10 @@ void widen_sigma(const FitDriver& driver,
     const double ambient = ambient_of(last, state);
     for (const double value : result.model) photons += value;
     photons -= ambient * static_cast<double>(result.num_observed());
-    result.warnings.push_back(
-        fmt::format("only {:.0f} photons: the stated errors are those of refits to simulated data, "
-                    "and not normally distributed",
-                    photons));
+    result.warnings.push_back(fmt::format(
+        "only {:.0f} photons: the reported errors are those of refits to simulated data, "
+        "and not normally distributed",
+        photons));
 }
 
 }  // namespace
@@ -333,7 +334,7 @@ FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
     if (!refined.is_settled) {
         result.warnings.push_back(
             "the edges of shadows on the model's elements did not settle: true errors exceed the "
-            "stated ones");
+            "reported ones");
     }
     warn_of_ambiguity(driver, candidates, result);
     result.seconds = watch.seconds();

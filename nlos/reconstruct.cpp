@@ -71,12 +71,12 @@ std::size_t claim_memory(const core::Capture& capture,
     if (num_slabs > kMaxSlabs) num_slabs = 1;
     const double bytes = bytes_in(num_slabs);
     require_memory(bytes, settings.memory_gb);
-    result.stated_bytes = bytes + plan.prepared.own_bytes();
+    result.estimated_bytes = bytes + plan.prepared.own_bytes();
     if (progress.announce) {
         progress.announce(fmt::format("{}: {}; needs {:.2f} GB of memory{}",
                                       result.method,
                                       result.reason,
-                                      1e-9 * result.stated_bytes,
+                                      1e-9 * result.estimated_bytes,
                                       num_slabs > 1 ? fmt::format(" in {} slabs", num_slabs) : ""));
     }
     check_stop(progress);

@@ -29,7 +29,7 @@ int default_merge_bins(const PreparedCapture& prepared, const ReconstructSetting
     if (!prepared.wall.grid) return 1;
     double limit_m =
         0.25 * std::min(prepared.wall.grid->pitch_m[0], prepared.wall.grid->pitch_m[1]);
-    if (traits_of(settings).explains_response && core::is_stated(settings.response)) {
+    if (traits_of(settings).explains_response && core::is_given(settings.response)) {
         const auto response = core::make_response(settings.response, "response");
         const double range_m = 0.5 * std::sqrt(core::moments(response).variance_m2);
         limit_m = std::max(limit_m, kBinOfResponse * range_m);
@@ -44,10 +44,10 @@ int default_merge_bins(const PreparedCapture& prepared, const ReconstructSetting
     return merge;
 }
 
-/// The stated response on bins of an axis; no weights: none is stated.
+/// The given response on bins of an axis; no weights: none is given.
 core::ResponseFilter response_filter(const ReconstructSettings& settings,
                                      const core::TimeAxis& axis) {
-    if (!core::is_stated(settings.response)) return {};
+    if (!core::is_given(settings.response)) return {};
     return core::sample_response(core::make_response(settings.response, "response"),
                                  axis.bin_width_m);
 }
@@ -59,11 +59,11 @@ double default_depth_step_m(const core::TimeAxis& axis, const ReconstructSetting
                                                : bin;
 }
 
-/// Half the path lengths that the axis covers once device legs are taken off.
+/// Half the path lengths that the axis covers once device segments are taken off.
 std::array<double, 2> default_z_range(const core::WallScan& scan, const core::TimeAxis& axis) {
-    const auto [shortest_leg, longest_leg] = core::device_leg_range_m(scan);
-    const double begin = std::max(0.0, 0.5 * (axis.opl_start_m - longest_leg));
-    const double end = 0.5 * (axis.opl_end_m() - shortest_leg);
+    const auto [shortest_segment, longest_segment] = core::device_segment_range_m(scan);
+    const double begin = std::max(0.0, 0.5 * (axis.opl_start_m - longest_segment));
+    const double end = 0.5 * (axis.opl_end_m() - shortest_segment);
     if (!(end > begin)) {
         throw core::Error("capture",
                           fmt::format("the time axis ends at a range of {:.4g} m", end),
@@ -80,7 +80,7 @@ void leave_out_direct_return(const core::Capture& capture, Reconstruction& resul
     const double end_m = capture.time_axis.opl_end_m();
     if (!direct || direct->end_opl_m >= end_m) return;
     settings.crop.opl_range_m = {direct->end_opl_m, end_m};
-    const bool is_open = !core::is_stated(settings.response) && !settings.response.is_none;
+    const bool is_open = !core::is_given(settings.response) && !settings.response.is_none;
     if (is_open && !core::recorded_response(capture)) {
         settings.response = direct->response;
     }
@@ -147,7 +147,7 @@ PreparationPlan choose_preparation(const PreparedCapture& prepared, ReconstructS
         settings.volume.z_range_m = default_z_range(prepared.scan, plan.prepared_axis(axis));
     }
     const MethodTraits& method = traits_of(settings);
-    if (!method.explains_response && core::is_stated(settings.response)) {
+    if (!method.explains_response && core::is_given(settings.response)) {
         plan.deconvolution =
             std::make_shared<const ResponseDeconvolution>(response_filter(settings, axis),
                                                           static_cast<std::size_t>(axis.num_bins),

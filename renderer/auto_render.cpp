@@ -85,7 +85,7 @@ bool is_narrow(const RenderTask& task) {
     const auto range = find_light_range(task.scene, task.scan, task.settings);
     const core::TimeAxis& axis = task.axes.time;
     return range && !range->is_dark() &&
-           range->share_between(axis.opl_start_m, axis.opl_end_m()) <
+           range->fraction_between(axis.opl_start_m, axis.opl_end_m()) <
                (task.scan.has_wall() ? kNarrowForScans : kNarrowForImages);
 }
 

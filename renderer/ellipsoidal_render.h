@@ -7,7 +7,7 @@ namespace renderer {
 
 /// Renders with ellipsoidal connections; results are those of render().
 ///
-/// With excluded surfaces dropped, a warning states what share of the signal is lost, see
+/// With excluded surfaces dropped, a warning says what fraction of the signal is lost, see
 /// warn_of_dropped_signal().
 RenderResult render_ellipsoidal(const RenderTask& task);
 
@@ -30,8 +30,8 @@ DroppedSignal measure_dropped_signal(const RenderTask& task, std::size_t max_pai
 /// Which surfaces connections end on, in words.
 std::string surfaces_kept(const RenderSettings& settings, const ExcludedObjects& excluded);
 
-/// With excluded surfaces dropped, warns of the share of the signal that is lost, estimated on some
-/// of the pairs.
+/// With excluded surfaces dropped, warns of the fraction of the signal that is lost, estimated on
+/// some of the pairs.
 ///
 /// result   with the capture and what was excluded
 void warn_of_dropped_signal(const RenderTask& task, const RenderResult& result);

@@ -57,10 +57,10 @@ std::vector<std::size_t> some_pairs(const core::Scan& scan) {
     const std::size_t count = scan.num_pairs();
     std::vector<std::size_t> pairs;
     for (std::size_t i = 0; i < std::min(kMaxPilotPairs, count); ++i) {
-        const double place = core::lattice_point(static_cast<int>(i), 1, core::Vec2::Zero()).y();
+        const double position = core::lattice_point(static_cast<int>(i), 1, core::Vec2::Zero()).y();
         pairs.push_back(count <= kMaxPilotPairs
                             ? i
-                            : static_cast<std::size_t>(place * static_cast<double>(count)));
+                            : static_cast<std::size_t>(position * static_cast<double>(count)));
     }
     scan.visit([&](const auto& kind) { add_corners(kind, pairs); });
     return pairs;
@@ -97,7 +97,7 @@ std::array<double, 2> possible_lengths(const Scene& scene,
             const Vec3 to_light = point - ends.light.position;
             if (to_sensor.dot(ends.sensor.normal) <= 0.0) continue;
             if (to_light.dot(ends.light.normal) <= 0.0) continue;
-            const double length = ends.device_legs_m + to_sensor.norm() + to_light.norm();
+            const double length = ends.device_segments_m + to_sensor.norm() + to_light.norm();
             ranges[i] = {std::min(ranges[i][0], length), std::max(ranges[i][1], length)};
         }
     });
@@ -195,7 +195,7 @@ std::array<double, 2> LightRange::without_tails(double tail) const {
             axis.bin_begin_m(static_cast<double>(last) + 1.0)};
 }
 
-double LightRange::share_between(double begin_m, double end_m) const {
+double LightRange::fraction_between(double begin_m, double end_m) const {
     double inside = 0.0;
     double all = 0.0;
     for (std::size_t bin = 0; bin < light.size(); ++bin) {
@@ -220,8 +220,8 @@ std::optional<LightRange> find_light_range(const Scene& scene,
     } else {
         range.possible_m = possible_lengths(scene, sensor_pairs, pairs);
         if (range.possible_m[1] == 0.0) return LightRange{{0.0, 0.0}, {0.0, 1.0, 1}, {0.0}};
-        const double legs = core::device_leg_range_m(scan.wall())[0];
-        range.axis.opl_start_m = std::max(0.0, legs);
+        const double segments = core::device_segment_range_m(scan.wall())[0];
+        range.axis.opl_start_m = std::max(0.0, segments);
         // Each segment of a longer path is at most about as long as the longest of a third bounce.
         longest = range.possible_m[1] * 0.5 * (settings.max_bounces - 1);
     }
@@ -238,7 +238,7 @@ core::TimeAxis choose_time_axis(const std::optional<LightRange>& range,
                                 const SceneDescription& description) {
     constexpr int kFewest = 64;
     constexpr int kMost = 4096;
-    constexpr double kMostStated = 1e9;  // bins of a stated width
+    constexpr double kMostStated = 1e9;  // bins of a given width
     constexpr double kMargin = 0.02;     // of the range, on either side
     if (!range || range->is_dark()) {
         throw core::Error("time_axis",
@@ -255,8 +255,8 @@ core::TimeAxis choose_time_axis(const std::optional<LightRange>& range,
         ends = {std::min(ends[0], later->possible_m[0]), std::max(ends[1], later->possible_m[1])};
         if (!later->is_dark()) sure_end = std::max(sure_end, later->without_tails(kTail)[1]);
     }
-    const double legs = scan.has_wall() ? core::device_leg_range_m(scan.wall())[0] : 0.0;
-    if (description.render.direct_return && scan.has_wall()) ends[0] = legs;
+    const double segments = scan.has_wall() ? core::device_segment_range_m(scan.wall())[0] : 0.0;
+    if (description.render.direct_return && scan.has_wall()) ends[0] = segments;
     ends[1] = std::max(ends[1], sure_end);
     const double margin = kMargin * (ends[1] - ends[0]);
     const double start = std::max(0.0, ends[0] - margin);
@@ -265,7 +265,7 @@ core::TimeAxis choose_time_axis(const std::optional<LightRange>& range,
     const SceneTimeAxis::Stated& stated = description.time_axis.stated;
     if (!stated.bin_width) {
         const double wanted = scan.visit(
-            [&](const auto& kind) { return resolving_bin_m(kind, 0.5 * (middle - legs)); });
+            [&](const auto& kind) { return resolving_bin_m(kind, 0.5 * (middle - segments)); });
         const double widest = widest_bin_of(description);
         double width = wanted > 0.0 ? std::min(wanted, span / kFewest) : span / 256.0;
         width = std::min(width, widest);
@@ -309,12 +309,12 @@ std::vector<std::string> axis_warnings(const LightRange& range,
                             help)};
     }
     // A gate is meant to hold little.
-    const double share = range.share_between(begin, end);
-    if (axis.num_bins == 1 || share >= kLittle) return {};
+    const double fraction = range.fraction_between(begin, end);
+    if (axis.num_bins == 1 || fraction >= kLittle) return {};
     const auto [first, last] = range.without_tails(kTail);
     return {fmt::format("{} and {:.2g} % of the light, which lies between {:.4g} and {:.4g} m; {}",
                         holds,
-                        100.0 * share,
+                        100.0 * fraction,
                         first,
                         last,
                         help)};

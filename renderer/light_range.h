@@ -24,8 +24,8 @@ struct LightRange {
     bool is_dark() const;
     /// Path lengths between which all but `tail` of the light lies on either side [m].
     std::array<double, 2> without_tails(double tail) const;
-    /// The share of the light between two path lengths [m]; 0 in the dark.
-    double share_between(double begin_m, double end_m) const;
+    /// The fraction of the light between two path lengths [m]; 0 in the dark.
+    double fraction_between(double begin_m, double end_m) const;
 };
 
 /// Finds the range in a few hundredths of a second.
@@ -41,8 +41,8 @@ std::optional<LightRange> find_light_range(const Scene& scene,
 /// along the wall (source [OToole2018], resolution limits), but about 64 to 4096 of them. Were it
 /// more, the last bins go, down to 99.9 % of the light, before bins grow wider.
 ///
-/// What the description states of an automatic axis stays as it is, and bins are fine enough for
-/// its detector.
+/// What the description gives of an automatic axis stays as it is, and bins are fine enough for its
+/// detector.
 ///
 /// range    of this scene, scan and description, before anything moves
 /// throws   core::Error when no light reaches the scan

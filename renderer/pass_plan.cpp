@@ -49,8 +49,8 @@ PassPlan plan_passes(const core::Scan& scan, const RenderSettings& settings) {
 
 std::optional<PassPlan> plan_after_pilot(const core::Scan& scan,
                                          const RenderSettings& settings,
-                                         double share) {
-    const double expected = kSamplesPerPilotPass * kPilotPasses / share;
+                                         double fraction) {
+    const double expected = kSamplesPerPilotPass * kPilotPasses / fraction;
     const double per_pass =
         std::min<double>(expected / kPassesAfterPilot, max_samples_per_pass(scan, settings));
     if (per_pass < kLeastGrowth * kSamplesPerPilotPass) return std::nullopt;

@@ -25,10 +25,10 @@ PassPlan plan_passes(const core::Scan& scan, const RenderSettings& settings);
 
 inline constexpr int kPilotPasses = 8;
 
-/// Passes that suit what is left to do once the pilot passes have done a share of it; none where
+/// Passes that suit what is left to do once the pilot passes have done a fraction of it; none where
 /// short ones may go on, which would then not be worth dropping.
 std::optional<PassPlan> plan_after_pilot(const core::Scan& scan,
                                          const RenderSettings& settings,
-                                         double share);
+                                         double fraction);
 
 }  // namespace renderer

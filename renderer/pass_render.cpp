@@ -102,7 +102,7 @@ class TileRender {
 
     bool samples() const { return work_.tracer != nullptr; }
     double trace_round(const core::Progress& progress, RenderResult& result);
-    void lengthen_passes_after_pilot(double share);
+    void lengthen_passes_after_pilot(double fraction);
     Subpaths trace_subpaths(int first, int count) const;
     std::uint64_t run_passes(int first, int count);
     std::uint64_t run_pass(std::size_t pair,
@@ -125,29 +125,29 @@ class TileRender {
 
 void TileRender::run(const core::Progress& progress, RenderResult& result) {
     while (true) {
-        const double share = trace_round(progress, result);
-        if (share >= 1.0) return;
+        const double fraction = trace_round(progress, result);
+        if (fraction >= 1.0) return;
         result.interrupted = progress.should_stop();
         if (result.interrupted) return;
-        lengthen_passes_after_pilot(share);
+        lengthen_passes_after_pilot(fraction);
     }
 }
 
-// Returns the share of the work that is done.
+// Returns the fraction of the work that is done.
 double TileRender::trace_round(const core::Progress& progress, RenderResult& result) {
     const int count = next_round(plan_, task_.settings, done_, watch_.seconds());
     result.num_rays += run_passes(first_ + done_, count);
     done_ += count;
     const double elapsed = watch_.seconds();
-    const double share = samples() ? rule_.share_done(done_, elapsed, sums_.time) : 1.0;
+    const double fraction = samples() ? rule_.fraction_done(done_, elapsed, sums_.time) : 1.0;
     paths_ += static_cast<double>(tile_.count) * plan_.samples_per_pass * count;
-    progress.update(share, fmt::format("{:.2f} M paths/s", paths_ / elapsed * 1e-6));
-    return share;
+    progress.update(fraction, fmt::format("{:.2f} M paths/s", paths_ / elapsed * 1e-6));
+    return fraction;
 }
 
-void TileRender::lengthen_passes_after_pilot(double share) {
+void TileRender::lengthen_passes_after_pilot(double fraction) {
     if (!is_open_ended(task_.settings) || first_ + done_ != kPilotPasses) return;
-    const auto longer = plan_after_pilot(task_.scan, task_.settings, share);
+    const auto longer = plan_after_pilot(task_.scan, task_.settings, fraction);
     if (!longer) return;
     plan_ = *longer;
     rule_ = {task_.settings, plan_.num_passes, work_.precomputed};
@@ -268,9 +268,9 @@ RenderResult render_passes(const RenderTask& task, const PassWork& work) {
     for (std::size_t begin = 0; begin < num_pairs; begin += tile_pairs) {
         const Tile tile{begin, std::min(tile_pairs, num_pairs - begin)};
         core::Progress part = task.progress;
-        part.report = [&](double share, const std::string& detail) {
+        part.report = [&](double fraction, const std::string& detail) {
             const double pairs =
-                static_cast<double>(begin) + share * static_cast<double>(tile.count);
+                static_cast<double>(begin) + fraction * static_cast<double>(tile.count);
             task.progress.update(pairs / static_cast<double>(num_pairs), detail);
         };
         TileRender of_tile(task, work, sensor_pairs, tile);

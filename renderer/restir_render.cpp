@@ -66,20 +66,20 @@ void add_direct_light_of_pixel(const RestirFrame& frame,
                                std::size_t pixel,
                                const RenderSettings& settings,
                                PassHistogram& histogram) {
-    constexpr int kPlaces = 32;
-    const PixelPositionSampler& places = *frame.scene->pixel_places;
+    constexpr int kPositions = 32;
+    const PixelPositionSampler& sampler = *frame.scene->pixel_positions;
     const TimeGate lengths = frame.bins.lengths();
     const PixelPositionSampler::Band band =
-        places.band(pixel, {lengths.begin_m(), lengths.end_m()});
-    const int count = bin_may_end_in(places.around(pixel), frame.bins.axes()) ? kPlaces : 1;
+        sampler.band(pixel, {lengths.begin_m(), lengths.end_m()});
+    const int count = bin_may_end_in(sampler.around(pixel), frame.bins.axes()) ? kPositions : 1;
     const PathDomain& domain = frame.domains[pixel];
-    const SurfaceWalk& walk = frame.scene->walk;
+    const RandomWalk& walk = frame.scene->walk;
     for (int i = 0; i < count; ++i) {
-        const core::Vec2 place = band.sample(core::lattice_point(i, count, domain.pixel_u));
-        auto seen = frame.scene->sensor_pairs.first_vertex(pixel, place);
+        const core::Vec2 position = band.sample(core::lattice_point(i, count, domain.pixel_u));
+        auto seen = frame.scene->sensor_pairs.first_vertex(pixel, position);
         if (!seen) continue;
-        seen->throughput = 1.0 / (count * band.pdf(place));
-        const PathExtent path = walk.extent_to_light(*seen, domain.ends);
+        seen->throughput = 1.0 / (count * band.pdf(position));
+        const OpticalPath path = walk.optical_path_to_light(*seen, domain.ends);
         if (seen->order > settings.max_bounces || !histogram.gate().admits(path.opl_m)) continue;
         const double value = walk.connection_value(*seen, domain.ends);
         if (!(value > 0.0) || walk.light_is_hidden(*seen, domain.ends)) continue;
@@ -109,7 +109,7 @@ std::optional<int> time_bin_of(const RestirFrame& frame,
                                   ? pixel_domain(scene.sensor_pairs, pair, path.pixel_u)
                                   : frame.domains[pair];
     return frame.bins.axes().time.bin_of(
-        scene.candidates.integrand().evaluate(domain, path).extent.opl_m);
+        scene.candidates.integrand().evaluate(domain, path).optical_path.opl_m);
 }
 
 // Adds what the reservoirs of a pair estimate.
@@ -189,9 +189,9 @@ RenderResult render_restir(const RenderTask& task) {
         const auto number = static_cast<std::uint64_t>(done);
         add_frame(renderer.render({restir_scene, axes, nullptr, number}), settings, sums);
         ++done;
-        const double share = rule.share_done(done, watch.seconds(), sums.time);
-        task.progress.update(share, fmt::format("{} frames", done));
-        return share >= 1.0;
+        const double fraction = rule.fraction_done(done, watch.seconds(), sums.time);
+        task.progress.update(fraction, fmt::format("{} frames", done));
+        return fraction >= 1.0;
     };
     bool interrupted = false;
     while (!interrupted && !render_frame()) interrupted = task.progress.should_stop();

@@ -16,7 +16,7 @@ namespace renderer {
 /// scan      that of the task, as core::scan_of_zones() gives it
 /// returns   a histogram per zone: mean radiance that leaves what the zone sees, for 1 W of the
 ///           laser [W/(m^2 sr)] per bin, relative to a zone of mean solid angle; zones that see
-///           nothing of the wall are stated as not observed. The error is the largest of the parts
+///           nothing of the wall are given as not observed. The error is the largest of the parts
 ///           that are rendered, relative to them
 /// throws    core::Error for walls that are meshes; what the estimator throws
 RenderResult render_zones(const RenderTask& task, const core::SensorScan& scan);

@@ -33,14 +33,14 @@ struct Half {
 
     void add(const RenderResult& estimate) {
         samples += estimate.samples_per_pair;
-        const float share =
+        const float fraction =
             static_cast<float>(estimate.samples_per_pair) / static_cast<float>(samples);
         const std::span<const float> values = estimate.capture.transient.values();
         std::transform(values.begin(),
                        values.end(),
                        mean.values().begin(),
                        mean.values().begin(),
-                       [&](float now, float before) { return before + share * (now - before); });
+                       [&](float now, float before) { return before + fraction * (now - before); });
     }
 };
 

@@ -121,8 +121,8 @@ double shadow_ray_seconds(const renderer::Scene& scene, const core::WallScan& sc
         core::Rng rng(0, p, 0);
         for (std::size_t i = 0; i < kRays; ++i) {
             const double u = (static_cast<double>(i) + rng.uniform()) / kRays;
-            const renderer::SurfacePoint place = sampler.sample(u, rng.uniform());
-            ends.set(i % kLanes, place.position, scene.facet(place.facet).normal);
+            const renderer::SurfacePoint end = sampler.sample(u, rng.uniform());
+            ends.set(i % kLanes, end.position, scene.facet(end.facet).normal);
             if (i % kLanes != kLanes - 1) continue;
             scene.rays().aim(packets.emplace_back(),
                              scan.sensing.positions[point],

@@ -63,9 +63,9 @@ std::string text_of_file(const std::string& path) {
 }
 
 core::Progress stopping_progress(core::Progress progress, const std::string& name) {
-    progress.report = [report = progress.report, name](double share, const std::string& detail) {
+    progress.report = [report = progress.report, name](double fraction, const std::string& detail) {
         if (interrupt_requested()) throw core::Failure("bench " + name, "interrupted");
-        report(share, detail);
+        report(fraction, detail);
     };
     return progress;
 }

@@ -58,9 +58,9 @@ struct BenchResult {
 /// core::Failure once the user has asked to stop.
 using Benchmark = std::function<BenchResult(const core::Progress&)>;
 
-/// The share that a part is of the whole.
+/// The fraction that a part is of the whole.
 template <class Part, class Whole>
-double share_of(Part part, Whole whole) {
+double fraction_of(Part part, Whole whole) {
     return static_cast<double>(part) / static_cast<double>(whole);
 }
 

@@ -50,7 +50,7 @@ const std::vector<Quantity> kQuantities{
       "normal_median_deg",
       "position_rms_m",
       "rotation_rms_deg"}},
-    // shares, of which more is better
+    // fractions, of which more is better
     {Judgement::Difference,
      0.02,
      {"mask_iou", "mask_iou_best", "accepted_share", "iou", "iou_best"}},

@@ -30,7 +30,7 @@ struct BenchRegression {
 NLOS_FIGURES(BenchRegression, program, machine, changes, num_alike, num_missing);
 
 /// Finds what became slower, larger or less accurate between two JSON files of a benchmark, and
-/// what became better: times by a quarter, memory and errors by a tenth, shares by 0.02, targets
+/// what became better: times by a quarter, memory and errors by a tenth, fractions by 0.02, targets
 /// met or missed. Rows of lists are matched by their names, not by their places.
 BenchRegression compare_benches(const core::Json& before, const core::Json& now);
 

@@ -75,15 +75,15 @@ inline double photons_for_peak(const core::Capture& capture, double peak_counts)
     return peak_counts * sum / double{*std::max_element(values.begin(), values.end())};
 }
 
-/// The bin in which this share of the capture's light has arrived.
-inline int bin_of_share(const core::Capture& capture, double share) {
+/// The bin in which this fraction of the capture's light has arrived.
+inline int bin_of_fraction(const core::Capture& capture, double fraction) {
     std::vector<double> arrived(static_cast<std::size_t>(capture.transient.num_bins()));
     const auto values = capture.transient.values();
     for (std::size_t i = 0; i < values.size(); ++i) {
         arrived[i % arrived.size()] += double{values[i]};
     }
     std::partial_sum(arrived.begin(), arrived.end(), arrived.begin());
-    const auto bin = std::lower_bound(arrived.begin(), arrived.end(), share * arrived.back());
+    const auto bin = std::lower_bound(arrived.begin(), arrived.end(), fraction * arrived.back());
     return static_cast<int>(bin - arrived.begin());
 }
 

@@ -35,7 +35,7 @@ Estimate estimate_of(const std::vector<double>& values) {
 }
 
 ErrorSums errors_of(const core::Transient& x, const core::Transient& a, const core::Transient& b) {
-    constexpr double kTrimmedShare = 0.002;
+    constexpr double kTrimmedFraction = 0.002;
     ErrorSums sums;
     std::vector<double> squares;
     for (std::size_t i = 0; i < x.values().size(); ++i) {
@@ -48,7 +48,7 @@ ErrorSums errors_of(const core::Transient& x, const core::Transient& a, const co
         sums.reference_sum += 0.5 * (va + vb);
     }
     const auto kept =
-        static_cast<std::ptrdiff_t>(static_cast<double>(squares.size()) * (1.0 - kTrimmedShare));
+        static_cast<std::ptrdiff_t>(static_cast<double>(squares.size()) * (1.0 - kTrimmedFraction));
     std::nth_element(squares.begin(), squares.begin() + kept, squares.end());
     for (std::size_t i = 0; i < squares.size(); ++i) {
         sums.squared += squares[i];

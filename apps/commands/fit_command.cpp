@@ -19,7 +19,7 @@ struct FitArguments {
     int threads = 0;
 };
 
-std::string place_text(const core::Vec3& position_m, const core::Vec3& sigma_m) {
+std::string position_text(const core::Vec3& position_m, const core::Vec3& sigma_m) {
     return fmt::format("at ({}, {}, {}) m",
                        estimate_text(position_m.x(), sigma_m.x()),
                        estimate_text(position_m.y(), sigma_m.y()),
@@ -29,7 +29,7 @@ std::string place_text(const core::Vec3& position_m, const core::Vec3& sigma_m) 
 void print_object(const calib::FittedObject& object) {
     print("{:<14} {}, turned +- {:.2g} deg",
           object.name,
-          place_text(object.position_m, object.position_sigma_m),
+          position_text(object.position_m, object.position_sigma_m),
           object.rotation_sigma_deg.norm());
     for (const auto& [name, estimate] : object.numbers) {
         print(", {} {}", name, estimate_text(estimate.value, estimate.sigma));
@@ -76,7 +76,7 @@ void run(const FitArguments& arguments) {
     note(result);
     for (const calib::FittedObject& object : result.objects) print_object(object);
     for (const calib::FittedPoint& point : result.points) {
-        print("point          {}\n", place_text(point.position_m, point.position_sigma_m));
+        print("point          {}\n", position_text(point.position_m, point.position_sigma_m));
     }
     print("wrote {} ({}, deviance {:.4g} of {:.4g} expected, {} iterations, {:.2f} s)\n",
           written,

@@ -57,7 +57,7 @@ calib::FitInput make_input(const FitRequest& request) {
 void use_calibration(const calib::AppliedCalibration& calibration, calib::FitInput& input) {
     calib::replace_points(calibration, input.capture.scan.wall());
     input.offset_m = calib::pair_offsets(calibration, input.capture.scan.wall());
-    if (!core::is_stated(input.settings.response)) input.settings.response = calibration.response;
+    if (!core::is_given(input.settings.response)) input.settings.response = calibration.response;
 }
 
 calib::FitResult fit_input(const calib::FitInput& input, const core::Progress& progress) {

@@ -111,7 +111,7 @@ void make(const GenerateArguments& arguments) {
         result.shards_there,
         result.seconds,
         result.profile.total() / made,
-        shares_text(result.profile));
+        fractions_text(result.profile));
 }
 
 /// Whether the items that runs were asked for, or those of --items, are there and undamaged.

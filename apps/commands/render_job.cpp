@@ -119,7 +119,7 @@ core::TimeAxis axis_of_device(const calib::AppliedCalibration& calibration, core
     return axis;
 }
 
-// Darkness has no error that could be stated relative to it.
+// Darkness has no error that could be given relative to it.
 void report_darkness(renderer::RenderResult& result, const core::Progress& progress) {
     if (const auto& sequence = result.capture.sequence) {
         const auto dark = std::ranges::count_if(sequence->frames, &core::Transient::is_dark);
@@ -152,13 +152,13 @@ std::string light_text(const renderer::LightRange& light, const core::TimeAxis& 
         light.possible_m[1],
         axis.opl_start_m,
         axis.opl_end_m(),
-        100.0 * light.share_between(axis.opl_start_m, axis.opl_end_m()));
+        100.0 * light.fraction_between(axis.opl_start_m, axis.opl_end_m()));
 }
 
 core::Json write_light(const renderer::LightRange& light, const core::TimeAxis& axis) {
     return {{"possible_m", light.possible_m},
             {"found_m", light.without_tails(0.0)},
-            {"share_in_axis", light.share_between(axis.opl_start_m, axis.opl_end_m())}};
+            {"share_in_axis", light.fraction_between(axis.opl_start_m, axis.opl_end_m())}};
 }
 
 void choose_axis(const std::optional<renderer::LightRange>& light, RenderInput& input) {

@@ -34,7 +34,7 @@ void use_calibration(calib::AppliedCalibration calibration, RenderInput& input);
 /// capture's `scene_info`.
 ///
 /// progress   told what looks wrong, each once; `scene_info` keeps it
-/// throws   core::Error, core::Failure as the front doors do
+/// throws   core::Error, core::Failure as the entry points do
 renderer::RenderResult render_input(RenderInput input, const core::Progress& progress);
 
 /// Renders a scene file into a capture file that carries settings, seed, version and command line;
@@ -42,7 +42,7 @@ renderer::RenderResult render_input(RenderInput input, const core::Progress& pro
 ///
 /// calibration_path   CALIBRATION.json whose points, path lengths and response the capture gets;
 ///                    empty: none
-/// throws   core::Error, core::Failure as the front doors do
+/// throws   core::Error, core::Failure as the entry points do
 renderer::RenderResult render_to_file(const std::string& scene_path,
                                       const std::vector<std::string>& overrides,
                                       const std::string& capture_path,

@@ -49,13 +49,13 @@ constexpr std::array kNoiseShorthands{
     Shorthand{"--expected", "expected", "", "Write expected counts instead of random ones"},
     Shorthand{"--seed", "seed", "N", "Seed of the random numbers"}};
 
-/// The sensor whose detector is asked for; one that is there and left aside is named.
+/// The sensor whose detector is asked for; one that is there and ignored is named.
 std::optional<core::SensorSetup> sensor_of(const NoiseArguments& arguments,
                                            const core::Capture& capture) {
     std::optional<core::SensorSetup> setup = core::recorded_sensor(capture);
     if (arguments.of_sensor && !setup) {
         throw core::Error(arguments.capture,
-                          "states no sensor that --sensor could take the detector of",
+                          "gives no sensor that --sensor could take the detector of",
                           "must come from a scan of pattern sensor");
     }
     if (setup && !arguments.of_sensor) {

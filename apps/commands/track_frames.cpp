@@ -88,7 +88,7 @@ std::vector<long> frame_numbers(const std::vector<std::string>& paths, std::size
 void refuse_unused_pose(const TrackSettings& settings) {
     if (settings.moves_sensor()) return;
     const bool has_poses = !settings.poses.empty();
-    if (!has_poses && !settings.pose.is_stated()) return;
+    if (!has_poses && !settings.pose.is_given()) return;
     throw core::Error(has_poses ? "poses" : "pose",
                       "found for frames that state wall points in place of a sensor",
                       "must come with `sensor`, or be left out");
@@ -96,7 +96,7 @@ void refuse_unused_pose(const TrackSettings& settings) {
 
 /// Takes from the provenance of a capture what the settings do not state.
 void adopt(const core::SensorSetup& recorded, TrackSettings& settings) {
-    const bool stands = settings.pose.is_stated() || settings.moves_sensor();
+    const bool stands = settings.pose.is_given() || settings.moves_sensor();
     if (settings.poses.empty() && !stands) settings.poses = recorded.poses;
     settings.pose.complete(recorded.pose_of_frame(0));
     if (!settings.wall) settings.wall = recorded.wall;
@@ -155,10 +155,10 @@ TrackSensor sensor_of(const core::Capture& capture,
 
 }  // namespace
 
-TrackSensor stated_sensor(const TrackSettings& settings) {
+TrackSensor given_sensor(const TrackSettings& settings) {
     if (settings.sensor.empty()) {
         throw core::Error(
-            "sensor", "is not stated", "must name the sensor of frames that come as lines");
+            "sensor", "is not given", "must name the sensor of frames that come as lines");
     }
     TrackSensor sensor;
     const core::SensorModel model = core::read_sensor_model(settings.sensor);

@@ -23,7 +23,7 @@ struct TrackFrames {
 /// Reads frames: a sequence capture, a folder or list of files that are frames. Where their names
 /// end in numbers, a number left out is a frame missing.
 ///
-/// settings   which also get the poses that the capture states, when they state none
+/// settings   which also get the poses that the capture gives, when they give none
 /// throws     core::Error when the frames do not say what counted them and the settings do not
 TrackFrames read_track_frames(const std::vector<std::string>& paths,
                               calib::TrackSettings& settings,
@@ -37,7 +37,7 @@ TrackFrames read_background_frames(const calib::TrackSettings& settings,
 
 /// The sensor that settings name, for frames that come without any word of it.
 /// throws   core::Error when they name none
-calib::TrackSensor stated_sensor(const calib::TrackSettings& settings);
+calib::TrackSensor given_sensor(const calib::TrackSettings& settings);
 
 /// Reads the next frame from lines of JSON: `t` [s], without it a frame's time after the last;
 /// `histograms`, a list of bins per zone, or null for a missing frame; on request `pose`.

@@ -151,7 +151,7 @@ TrackSummary track_live(const TrackRequest& request, std::istream& lines) {
     std::vector<std::string> overrides = request.overrides;
     const auto reading = capture_options(take_capture_overrides(overrides)).capture;
     const TrackSettings settings = calib::read_track_settings(request.model, overrides);
-    const TrackSensor sensor = stated_sensor(settings);
+    const TrackSensor sensor = given_sensor(settings);
     Run run(settings, sensor, reading);
     FrameLines source(lines, sensor);
     while (const auto frame = source.next()) {

@@ -156,8 +156,8 @@ void draw_paths(const std::vector<calib::FrameEstimate>& frames,
     for (const auto& [id, path] : paths) {
         const std::size_t step = (path.size() + kMostEllipses - 1) / kMostEllipses;
         for (std::size_t i = 0; i < path.size(); i += step) {
-            plan.ellipse(calib::stated_position_m(*path[i], settings),
-                         calib::stated_covariance_m2(*path[i], settings),
+            plan.ellipse(calib::reported_position_m(*path[i], settings),
+                         calib::reported_covariance_m2(*path[i], settings),
                          colour_of(id));
         }
     }
@@ -165,7 +165,7 @@ void draw_paths(const std::vector<calib::FrameEstimate>& frames,
     for (const auto& [id, path] : paths) {
         std::vector<Point> line;
         for (const auto* target : path)
-            line.push_back(plan.place(calib::stated_position_m(*target, settings)));
+            line.push_back(plan.place(calib::reported_position_m(*target, settings)));
         const Point first = line.front();
         plan.line(std::move(line), colour_of(id), 4, 0.0);
         plan.mark(first, 0.02, kStartColour);

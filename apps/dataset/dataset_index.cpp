@@ -154,8 +154,8 @@ std::map<std::string, DrawnHistogram> drawn_histograms(const DatasetIndex& index
         const auto [low, high] = std::ranges::minmax(values);
         std::vector<std::size_t> counts(kHistogramBins);
         for (const double value : values) {
-            const double place = high > low ? (value - low) / (high - low) : 0.0;
-            const auto bin = static_cast<std::size_t>(place * kHistogramBins);
+            const double position = high > low ? (value - low) / (high - low) : 0.0;
+            const auto bin = static_cast<std::size_t>(position * kHistogramBins);
             ++counts[std::min(bin, kHistogramBins - 1)];
         }
         histograms[key] = {low, high, std::move(counts)};

@@ -12,8 +12,8 @@ namespace apps {
 namespace {
 
 constexpr std::array kTolerances{32.0, 16.0, 8.0, 4.0, 2.0, 1.0, 0.5};  // by target error
-constexpr double kReferenceShare = 0.2;
-constexpr double kAllowedShare = 0.75;
+constexpr double kReferenceFraction = 0.2;
+constexpr double kAllowedFraction = 0.75;
 constexpr int kMostPointsPerSide = 6;
 
 using Errors = std::array<double, kTolerances.size()>;
@@ -49,7 +49,7 @@ Errors errors_of_item(const Recipe& recipe, MeshLibrary& meshes, std::uint64_t i
     const renderer::Scene scene = renderer::make_scene(geometry_of(plan), description, scan);
     const double target = *recipe.scene.render.target_error;
     const core::Capture reference =
-        render_with(scene, scan, description, kReferenceShare * target, std::nullopt);
+        render_with(scene, scan, description, kReferenceFraction * target, std::nullopt);
     Errors errors{};
     for (std::size_t i = 0; i < kTolerances.size(); ++i) {
         const core::Capture capture =
@@ -76,7 +76,7 @@ std::optional<double> find_element_tolerance(const Recipe& recipe,
     const double target = *recipe.scene.render.target_error;
     for (std::size_t i = 0; i < kTolerances.size(); ++i) {
         const bool holds = std::all_of(errors.begin(), errors.end(), [&](const Errors& of_item) {
-            return of_item[i] <= kAllowedShare * target;
+            return of_item[i] <= kAllowedFraction * target;
         });
         if (holds) return kTolerances[i] * target;
     }

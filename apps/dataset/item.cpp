@@ -208,12 +208,12 @@ void ItemProfile::add(const ItemProfile& other) {
     packing += other.packing;
 }
 
-std::string shares_text(ItemProfile profile) {
+std::string fractions_text(ItemProfile profile) {
     const double total = profile.total();
     std::string text;
     for_each_field(profile, [&](const char* name, double seconds, const char*) {
-        const double share = total > 0.0 ? seconds / total : 0.0;
-        text += fmt::format("{}{} {:.1f} %", text.empty() ? "" : ", ", name, 100.0 * share);
+        const double fraction = total > 0.0 ? seconds / total : 0.0;
+        text += fmt::format("{}{} {:.1f} %", text.empty() ? "" : ", ", name, 100.0 * fraction);
     });
     return text;
 }

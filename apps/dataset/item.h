@@ -54,8 +54,8 @@ void for_each_field(ItemProfile& p, Visitor&& visit) {
     visit("packing", p.packing, "compressing and writing");
 }
 
-/// The share of each step, for people.
-std::string shares_text(ItemProfile profile);
+/// The fraction of each step, for people.
+std::string fractions_text(ItemProfile profile);
 
 /// One capture of a data set, with what is known of its scene, as it is stored.
 struct Item {

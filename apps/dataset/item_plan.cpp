@@ -16,7 +16,7 @@ using core::Rng;
 using core::Vec3;
 
 constexpr int kMostMeshesTried = 1000;
-constexpr int kMostPlacesTried = 200;
+constexpr int kMostPositionsTried = 200;
 constexpr double kGap_m = 0.01;  // between an object and the wall, or another object
 
 /// Shoemake's [Shoemake1992].
@@ -26,10 +26,10 @@ Eigen::Quaterniond draw_rotation(Rotation rotation, Rng& rng) {
     if (rotation == Rotation::Upright) {
         return Eigen::Quaterniond(Eigen::AngleAxisd(turn, Vec3::UnitY()));
     }
-    const double share = rng.uniform();
+    const double fraction = rng.uniform();
     const double other = 2.0 * std::numbers::pi * rng.uniform();
-    const double near = std::sqrt(1.0 - share);
-    const double far = std::sqrt(share);
+    const double near = std::sqrt(1.0 - fraction);
+    const double far = std::sqrt(fraction);
     return {
         far * std::cos(other), near * std::sin(turn), near * std::cos(turn), far * std::sin(other)};
 }
@@ -94,28 +94,28 @@ struct Ball {
 };
 
 /// A place in front of the wall and, if asked for, beside the others; nothing when none is found.
-std::optional<Vec3> draw_place(const ObjectDistributions& how,
-                               double radius_m,
-                               const std::vector<Ball>& others,
-                               Rng& rng) {
-    for (int tried = 0; tried < kMostPlacesTried; ++tried) {
-        const Vec3 place(
+std::optional<Vec3> draw_position(const ObjectDistributions& how,
+                                  double radius_m,
+                                  const std::vector<Ball>& others,
+                                  Rng& rng) {
+    for (int tried = 0; tried < kMostPositionsTried; ++tried) {
+        const Vec3 position(
             draw_number(how.x_m, rng), draw_number(how.y_m, rng), draw_number(how.z_m, rng));
-        if (place.z() - radius_m < kGap_m) continue;
+        if (position.z() - radius_m < kGap_m) continue;
         const bool is_free = std::all_of(others.begin(), others.end(), [&](const Ball& other) {
-            return (place - other.centre_m).norm() >= radius_m + other.radius_m + kGap_m;
+            return (position - other.centre_m).norm() >= radius_m + other.radius_m + kGap_m;
         });
-        if (is_free || !how.keep_apart) return place;
+        if (is_free || !how.keep_apart) return position;
     }
     return std::nullopt;
 }
 
-core::Json describe(const PlacedObject& object, const DrawnObject& drawn, const Vec3& place) {
+core::Json describe(const PlacedObject& object, const DrawnObject& drawn, const Vec3& position) {
     const Eigen::Quaterniond& q = drawn.rotation;
     const renderer::Material& material = object.material;
     return {{"mesh", object.mesh->name},
             {"triangles", object.mesh->mesh.triangles.size()},
-            {"position_m", core::write_value(place)},
+            {"position_m", core::write_value(position)},
             {"rotation_wxyz", {q.w(), q.x(), q.y(), q.z()}},
             {"scale_m", core::write_value(drawn.scale)},
             {"albedo", material.albedo},
@@ -134,21 +134,21 @@ void place_objects(const Recipe& recipe, MeshLibrary& meshes, std::uint64_t item
         Rng rng(recipe.seed, item, stream_of(fmt::format("objects[{}]", i)));
         const DrawnObject drawn = draw_object(how, meshes, rng, plan.broken);
         PlacedObject object{drawn.mesh, core::Transform::Identity(), draw_material(how, rng)};
-        const auto place = draw_place(how, drawn.radius_m, balls, rng);
-        if (!place && balls.empty() && i + 1 == count) {
+        const auto position = draw_position(how, drawn.radius_m, balls, rng);
+        if (!position && balls.empty() && i + 1 == count) {
             throw core::Error("objects",
                               fmt::format("item {}: no object finds a place", item),
                               "must have sizes and places of which some lie in front of the wall");
         }
-        if (!place) {
+        if (!position) {
             ++left_out;
             continue;
         }
-        object.world_from_mesh = world_from_wall * Eigen::Translation3d(*place) * drawn.rotation *
-                                 Eigen::Scaling(drawn.scale);
-        plan.parameters["objects"].push_back(describe(object, drawn, *place));
+        object.world_from_mesh = world_from_wall * Eigen::Translation3d(*position) *
+                                 drawn.rotation * Eigen::Scaling(drawn.scale);
+        plan.parameters["objects"].push_back(describe(object, drawn, *position));
         plan.objects.push_back(std::move(object));
-        balls.push_back({*place, drawn.radius_m});
+        balls.push_back({*position, drawn.radius_m});
     }
     plan.parameters["objects_left_out"] = left_out;
 }

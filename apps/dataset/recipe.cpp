@@ -142,9 +142,9 @@ void validate(const Recipe& recipe, const std::string& where) {
     core::check_ranges(recipe, where);
     core::check_ranges(recipe.objects, where + "objects");
     const ObjectDistributions& objects = recipe.objects;
-    for (const auto& [key, place] :
+    for (const auto& [key, target] :
          {std::pair{"x_m", &objects.x_m}, {"y_m", &objects.y_m}, {"z_m", &objects.z_m}}) {
-        check_range(*place, {}, where + "objects." + key);  // any number
+        check_range(*target, {}, where + "objects." + key);  // any number
     }
     validate_counts(recipe, where);
     const MeshSource& meshes = recipe.meshes;
@@ -171,12 +171,12 @@ core::Json write_identity(const Recipe& recipe) {
 void apply_values(const core::Json& values, ItemSettings& settings) {
     core::Json changes = core::Json::object();
     for (const auto& [key, value] : values.items()) {
-        core::Json* place = &changes;
+        core::Json* target = &changes;
         std::size_t begin = 0;
         for (std::size_t dot; (dot = key.find('.', begin)) != std::string::npos; begin = dot + 1) {
-            place = &(*place)[key.substr(begin, dot - begin)];
+            target = &(*target)[key.substr(begin, dot - begin)];
         }
-        (*place)[key.substr(begin)] = value;
+        (*target)[key.substr(begin)] = value;
     }
     core::read_value(changes, "", settings);
 }

@@ -85,7 +85,7 @@ void for_each_field(MeshSource& s, Visitor&& visit) {
           s.tolerance_bins,
           core::at_least(0,
                          "triangles are taken away as long as the surface of the largest object "
-                         "moves by less than this share of a bin; 0: all are kept"));
+                         "moves by less than this fraction of a bin; 0: all are kept"));
 }
 
 template <class Visitor>

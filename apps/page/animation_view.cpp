@@ -12,8 +12,8 @@
 namespace apps {
 namespace {
 
-constexpr double kFaintest = 1e-5;     // of the brightest value; what is fainter is not shown
-constexpr double kQuietShare = 0.001;  // of all light, before and after the bins called lit
+constexpr double kFaintest = 1e-5;        // of the brightest value; what is fainter is not shown
+constexpr double kQuietFraction = 0.001;  // of all light, before and after the bins called lit
 
 /// Whose histogram each cell shows, cells in the order of the view.
 std::vector<std::size_t> pairs_of_cells(const core::WallScan& scan,
@@ -89,9 +89,9 @@ void code_light(const std::vector<float>& light, AnimationView& view) {
     view.lit_bins = {0, view.num_bins - 1};
     double sum = 0.0;
     for (std::size_t bin = 0; bin < view.num_bins && total > 0.0; ++bin) {
-        if (sum <= kQuietShare * total) view.lit_bins[0] = bin;
+        if (sum <= kQuietFraction * total) view.lit_bins[0] = bin;
         sum += per_bin[bin];
-        if (sum >= (1.0 - kQuietShare) * total) {
+        if (sum >= (1.0 - kQuietFraction) * total) {
             view.lit_bins[1] = bin;
             break;
         }

@@ -57,8 +57,8 @@ core::Json add_points(PageArrays& arrays,
     for (const core::Vec3& point : placed) {
         for (int axis = 0; axis < 3; ++axis) {
             const double size = high[axis] - low[axis];
-            const double share = size > 0.0 ? (point[axis] - low[axis]) / size : 0.0;
-            codes.push_back(static_cast<std::uint16_t>(0.5 + kSteps * share));
+            const double fraction = size > 0.0 ? (point[axis] - low[axis]) / size : 0.0;
+            codes.push_back(static_cast<std::uint16_t>(0.5 + kSteps * fraction));
         }
     }
     core::Json json = arrays.add(codes);

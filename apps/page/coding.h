@@ -47,8 +47,8 @@ struct LinearCoding {
     Code encode(double value) const {
         if (std::isnan(value)) return 0;
         constexpr double kSteps = std::numeric_limits<Code>::max() - 1;
-        const double share = high > low ? (value - low) / (high - low) : 0.0;
-        return static_cast<Code>(1.5 + kSteps * std::clamp(share, 0.0, 1.0));
+        const double fraction = high > low ? (value - low) / (high - low) : 0.0;
+        return static_cast<Code>(1.5 + kSteps * std::clamp(fraction, 0.0, 1.0));
     }
 
     /// Codes all values. returns   what PageArrays::add() does, with the coding

@@ -15,7 +15,7 @@ namespace {
 constexpr int kPixelDensity = 2;
 constexpr int kNarrowest = 560;  // smaller pictures of others are shown as large as they are
 
-/// The width that a PNG file states: bytes 16 to 19, the highest first; nothing for other files.
+/// The width that a PNG file gives: bytes 16 to 19, the highest first; nothing for other files.
 std::optional<int> png_width(std::string_view bytes) {
     if (bytes.size() < 24 || !bytes.starts_with("\x89PNG\r\n\x1a\n")) return std::nullopt;
     int width = 0;

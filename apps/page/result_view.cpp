@@ -56,14 +56,14 @@ struct ColumnQuantity {
 std::vector<ColumnQuantity> quantities_of(const ResultView& result, const MapScales& scales) {
     const Range error_range{-scales.error_mm, scales.error_mm};
     const Range sigma_range{0.0, scales.sigma_mm};
-    const Range shares{0.0, 1.0};
+    const Range fractions{0.0, 1.0};
     const std::vector<double> sigma_mm = scaled(result.sigma_m, 1e3);
     const std::vector<double> brightest(result.projection.begin(), result.projection.end());
     return {{"Depth", "m", "depth", scales.depth_m, result.depth.depth_m},
             {"Depth error", "mm", "diverging", error_range, errors_mm(result)},
-            {"Maximum projection", "", "heat", shares, brightest, false},
+            {"Maximum projection", "", "heat", fractions, brightest, false},
             {"Standard deviation of depth", "mm", "depth", sigma_range, sigma_mm},
-            {"Probability of a surface", "", "share", shares, result.probability, false}};
+            {"Probability of a surface", "", "share", fractions, result.probability, false}};
 }
 
 /// values   of the quantity, at columns or at points

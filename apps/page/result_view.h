@@ -27,9 +27,9 @@ struct ResultView {
     std::string name;    ///< the method, with what tells it from others of the same
     std::string detail;  ///< size and file
     core::DepthMap depth;
-    std::vector<double> probability;  ///< per column of `depth`; empty: not stated
+    std::vector<double> probability;  ///< per column of `depth`; empty: not given
     std::vector<double> sigma_m;      ///< likewise
-    std::vector<float> projection;    ///< brightest along z per column, as share of the brightest
+    std::vector<float> projection;  ///< brightest along z per column, as fraction of the brightest
     VolumeView volume;
     std::optional<core::DepthMap> truth;  ///< seen from the columns of `depth`; nothing: not known
 };

@@ -67,7 +67,7 @@ Capture capture_from_arrays(nb::handle values,
                             nb::handle illumination_normals,
                             const nb::kwargs& keywords) {
     Capture capture;
-    capture.time_axis.bin_width_m = 0.0;  // to be stated
+    capture.time_axis.bin_width_m = 0.0;  // to be given
     const auto fields = settings_from_python(keywords, CaptureFields{capture, {}, {}, {}});
     core::check_ranges(fields, "");
     core::WallScan& scan = capture.scan.wall();

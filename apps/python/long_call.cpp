@@ -39,10 +39,10 @@ void CallProgress::call_python(const Call& call) {
     }
 }
 
-void CallProgress::report(double share, const std::string& text) {
+void CallProgress::report(double fraction, const std::string& text) {
     if (callback_.is_none() || stopped_) return;
     call_python([&] {
-        const nb::object answer = callback_(share, text);
+        const nb::object answer = callback_(fraction, text);
         if (answer.ptr() == Py_False) stopped_ = true;
     });
 }
@@ -62,7 +62,7 @@ bool CallProgress::should_stop() {
 
 core::Progress CallProgress::progress() {
     core::Progress progress;
-    progress.report = [this](double share, const std::string& text) { report(share, text); };
+    progress.report = [this](double fraction, const std::string& text) { report(fraction, text); };
     progress.stop_requested = [this] { return should_stop(); };
     progress.warn = [this](const std::string& text) { doubts_.push_back(text); };
     return progress;

@@ -22,8 +22,8 @@ namespace python {
 /// raise_pending().
 class CallProgress {
  public:
-    /// callback   None, or called as callback(share, text) from the calling thread; if it returns
-    ///            False, the work stops with what it has
+    /// callback   None, or called as callback(fraction, text) from the calling thread; if it
+    ///            returns False, the work stops with what it has
     explicit CallProgress(nanobind::object callback) : callback_(std::move(callback)) {}
 
     core::Progress progress();
@@ -35,7 +35,7 @@ class CallProgress {
  private:
     using Clock = std::chrono::steady_clock;
 
-    void report(double share, const std::string& text);
+    void report(double fraction, const std::string& text);
     bool should_stop();
     template <class Call>
     void call_python(const Call& call);

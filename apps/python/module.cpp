@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The Python module `nlos._core`: the program's front doors, with NumPy arrays as views. What users
-// see stands in nlos/__init__.py.
+// The Python module `nlos._core`: the program's entry points, with NumPy arrays as views. What
+// users see stands in nlos/__init__.py.
 #include "apps/arguments.h"
 #include "apps/python/bindings.h"
 #include "apps/version.h"

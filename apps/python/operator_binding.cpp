@@ -42,7 +42,7 @@ Array<float> as_array(core::Transient light, const core::Scan& scan) {
 
 template <auto Axis, class Operator>
 Array<double> axis_of(const Operator& self) {
-    const std::vector<double>& centres = self.place().axes.*Axis;
+    const std::vector<double>& centres = self.domain().axes.*Axis;
     return array_of(centres, {centres.size()});
 }
 
@@ -52,28 +52,28 @@ void bind_application(nb::class_<Operator>& binding) {
         .def(
             "forward",
             [](Operator& self, nb::handle volume) {
-                const auto values = volume_from(volume, self.place().volume_shape());
+                const auto values = volume_from(volume, self.domain().volume_shape());
                 return as_array(
                     run_long(
                         nb::none(), 0, [&](const core::Progress&) { return self.forward(values); }),
-                    self.place().scan);
+                    self.domain().scan);
             },
             nb::arg("volume"),
             "(X, Y, Z) albedo to histograms of the shape of the capture's H.")
         .def(
             "adjoint",
             [](Operator& self, nb::handle histograms) {
-                const auto light = light_from(histograms, self.place().light_shape());
+                const auto light = light_from(histograms, self.domain().light_shape());
                 return array_of(
                     run_long(
                         nb::none(), 0, [&](const core::Progress&) { return self.adjoint(light); }),
-                    self.place().volume_shape());
+                    self.domain().volume_shape());
             },
             nb::arg("H"),
             "The exact transpose of forward().")
         .def_prop_ro(
             "volume_shape",
-            [](const Operator& self) { return nb::tuple(nb::cast(self.place().volume_shape())); })
+            [](const Operator& self) { return nb::tuple(nb::cast(self.domain().volume_shape())); })
         .def_prop_ro("x_m", &axis_of<&nlos::VolumeAxes::x_m, Operator>, nb::rv_policy::reference)
         .def_prop_ro("y_m", &axis_of<&nlos::VolumeAxes::y_m, Operator>, nb::rv_policy::reference)
         .def_prop_ro("z_m", &axis_of<&nlos::VolumeAxes::z_m, Operator>, nb::rv_policy::reference);
@@ -101,7 +101,7 @@ void bind_operators(nb::module_& module) {
     nb::class_<PairLight> pairs(module,
                                 "PairOperator",
                                 "Light of voxels at any pairs of wall points, albedo over squared "
-                                "legs, and its exact adjoint, which is backprojection.");
+                                "segments, and its exact adjoint, which is backprojection.");
     pairs.def(
         "__init__",
         [](PairLight* self,

@@ -30,7 +30,7 @@ void for_each_field(OperatorSettings& s, Visitor&& visit) {
 }
 
 /// The scan and the voxels of an operator, which refers to them.
-struct OperatorPlace {
+struct OperatorDomain {
     core::WallScan scan;
     core::TimeAxis axis;
     core::ObservedBins observed;
@@ -39,7 +39,7 @@ struct OperatorPlace {
     nlos::VolumeAxes axes;
     core::Progress progress{};
 
-    OperatorPlace(const core::Capture& capture, std::array<std::vector<double>, 3> voxels_m)
+    OperatorDomain(const core::Capture& capture, std::array<std::vector<double>, 3> voxels_m)
         : scan(capture.scan.wall()),
           axis(capture.time_axis),
           observed(capture.observed),
@@ -52,7 +52,7 @@ struct OperatorPlace {
     nlos::MethodInput input(const OperatorSettings& settings) const {
         nlos::MethodInput input{scan, axis, empty, wall, axes, {0.0, 0.0}, progress};
         if (observed) input.observed = &*observed;
-        if (core::is_stated(settings.response)) {
+        if (core::is_given(settings.response)) {
             input.measurement.response = core::sample_response(
                 core::make_response(settings.response, "response"), axis.bin_width_m);
         }
@@ -70,12 +70,12 @@ class PairLight {
     PairLight(const core::Capture& capture,
               std::array<std::vector<double>, 3> voxels_m,
               const OperatorSettings& settings)
-        : place_(std::make_unique<OperatorPlace>(capture, std::move(voxels_m))),
-          operator_(place_->input(settings), settings.falloff, settings.spot_m),
+        : domain_(std::make_unique<OperatorDomain>(capture, std::move(voxels_m))),
+          operator_(domain_->input(settings), settings.falloff, settings.spot_m),
           pairs_(capture.scan.num_pairs()) {
         std::iota(pairs_.begin(), pairs_.end(), std::size_t{0});
         std::vector<Eigen::Vector3f> voxels;
-        const nlos::VolumeAxes& axes = place_->axes;
+        const nlos::VolumeAxes& axes = domain_->axes;
         voxels.reserve(axes.num_voxels());
         for (const double x : axes.x_m) {
             for (const double y : axes.y_m) {
@@ -87,10 +87,10 @@ class PairLight {
         operator_.set_voxels(std::move(voxels));
     }
 
-    const OperatorPlace& place() const { return *place_; }
+    const OperatorDomain& domain() const { return *domain_; }
 
     core::Transient forward(const std::vector<float>& volume) {
-        core::Transient light(pairs_.size(), place_->axis.num_bins);
+        core::Transient light(pairs_.size(), domain_->axis.num_bins);
         operator_.forward(volume, pairs_, light.values());
         return light;
     }
@@ -101,7 +101,7 @@ class PairLight {
     }
 
  private:
-    std::unique_ptr<const OperatorPlace> place_;
+    std::unique_ptr<const OperatorDomain> domain_;
     nlos::PairOperator operator_;
     std::vector<std::size_t> pairs_;
 };
@@ -111,19 +111,19 @@ class PairLight {
 class LightCone {
  public:
     LightCone(const core::Capture& capture, const OperatorSettings& settings)
-        : place_(std::make_unique<OperatorPlace>(capture, columns_of(capture))),
+        : domain_(std::make_unique<OperatorDomain>(capture, columns_of(capture))),
           cone_(checked_cone(settings)),
-          convolution_(cone_, *place_->wall.grid, settings.spot_m, 1.0, 1.0),
+          convolution_(cone_, *domain_->wall.grid, settings.spot_m, 1.0, 1.0),
           time_(axis_from_wall(),
                 cone_.v_edges,
                 nlos::falloff_power(settings.falloff),
-                place_->input(settings).measurement.response) {
+                domain_->input(settings).measurement.response) {
         for (std::size_t i = 0; i < cone_.num_v(); ++i) {
-            place_->axes.z_m.push_back(std::sqrt(0.5 * (cone_.v_edges[i] + cone_.v_edges[i + 1])));
+            domain_->axes.z_m.push_back(std::sqrt(0.5 * (cone_.v_edges[i] + cone_.v_edges[i + 1])));
         }
     }
 
-    const OperatorPlace& place() const { return *place_; }
+    const OperatorDomain& domain() const { return *domain_; }
 
     core::Transient forward(const std::vector<float>& volume) {
         nlos::ConeField field(volume.size());
@@ -134,12 +134,12 @@ class LightCone {
             const std::lock_guard lock(one_at_a_time_);
             convolution_.forward(field, light);
         }
-        core::Transient result(place_->scan.num_pairs(), place_->axis.num_bins);
+        core::Transient result(domain_->scan.num_pairs(), domain_->axis.num_bins);
         core::parallel_for(cone_.nx, [&](std::size_t x) {
             std::vector<float> time(time_.num_bins() * cone_.ny);
             time_.apply(light.data() + x * cone_.num_v() * cone_.ny, time.data(), cone_.ny);
-            for_each_bin(x, [&](std::size_t pair, std::size_t bin, std::size_t place) {
-                result.histogram(pair)[bin] = time[place];
+            for_each_bin(x, [&](std::size_t pair, std::size_t bin, std::size_t index) {
+                result.histogram(pair)[bin] = time[index];
             });
         });
         return result;
@@ -148,8 +148,8 @@ class LightCone {
         nlos::ConeField at_wall(convolution_.num_values());
         core::parallel_for(cone_.nx, [&](std::size_t x) {
             std::vector<float> time(time_.num_bins() * cone_.ny);
-            for_each_bin(x, [&](std::size_t pair, std::size_t bin, std::size_t place) {
-                time[place] = light.histogram(pair)[bin];
+            for_each_bin(x, [&](std::size_t pair, std::size_t bin, std::size_t index) {
+                time[index] = light.histogram(pair)[bin];
             });
             time_.apply_adjoint(
                 time.data(), at_wall.data() + x * cone_.num_v() * cone_.ny, cone_.ny);
@@ -181,10 +181,10 @@ class LightCone {
         return columns;
     }
     nlos::Cone checked_cone(const OperatorSettings& settings) const {
-        nlos::Cone cone = nlos::make_cone(place_->input(settings), 1);
+        nlos::Cone cone = nlos::make_cone(domain_->input(settings), 1);
         if (!cone.is_same_for_all) {
             throw core::Error("capture",
-                              "has device legs that differ from point to point",
+                              "has device segments that differ from point to point",
                               "must have path lengths between wall points; PairOperator takes any");
         }
         core::require(settings.falloff != nlos::Falloff::Facing,
@@ -194,8 +194,8 @@ class LightCone {
         return cone;
     }
     core::TimeAxis axis_from_wall() const {
-        core::TimeAxis axis = place_->axis;
-        axis.opl_start_m -= cone_.min_leg_m;
+        core::TimeAxis axis = domain_->axis;
+        axis.opl_start_m -= cone_.min_segment_m;
         return axis;
     }
     /// Calls visit(place in [x][v][y], place in [x][y][v]).
@@ -214,9 +214,9 @@ class LightCone {
     template <class Visit>
     void for_each_bin(std::size_t x, const Visit& visit) const {
         for (std::size_t y = 0; y < cone_.ny; ++y) {
-            const std::size_t pair = place_->wall.grid->point(x, y);
+            const std::size_t pair = domain_->wall.grid->point(x, y);
             const core::BinRange range =
-                core::observed_range(place_->observed, pair, place_->axis.num_bins);
+                core::observed_range(domain_->observed, pair, domain_->axis.num_bins);
             for (int b = range.begin; b < range.end; ++b) {
                 const auto bin = static_cast<std::size_t>(b);
                 visit(pair, bin, bin * cone_.ny + y);
@@ -224,7 +224,7 @@ class LightCone {
         }
     }
 
-    std::unique_ptr<OperatorPlace> place_;
+    std::unique_ptr<OperatorDomain> domain_;
     nlos::Cone cone_;
     nlos::ConeConvolution convolution_;
     nlos::TimeOperator time_;

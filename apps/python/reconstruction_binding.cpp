@@ -34,7 +34,7 @@ Array<double> axis_view(nb::handle self) {
     return array_view(values.data(), {values.size()}, self);
 }
 
-// Of what is stated per column, where it is.
+// Of what is reported per column, where it is.
 template <auto ValuesOf>
 std::optional<Array<double>> column_view(nb::handle self) {
     auto& result = nb::cast<Reconstruction&>(self);
@@ -92,7 +92,7 @@ void bind_arrays(nb::class_<Reconstruction>& binding) {
                      "(X, Y) standard deviation of depth_m [m]; None where the noise is not known")
         .def_prop_ro("surface_probability",
                      &column_view<[](auto& r) -> auto& { return r.surface_probability; }>,
-                     "(X, Y) probability that a column holds a surface; None: not stated")
+                     "(X, Y) probability that a column holds a surface; None: not given")
         .def_prop_ro(
             "normals",
             [](nb::handle self) -> std::optional<Array<double>> {
@@ -138,7 +138,7 @@ void bind_reconstruction(nb::module_& module) {
     bind_pictures(binding,
                   &nlos::volume_panels,
                   2,
-                  "PNG, SVG or PDF: projections, depth, and what is stated about it.");
+                  "PNG, SVG or PDF: projections, depth, and what is reported about it.");
     module.def(
         "read_volume",
         [](const std::string& path) { return with_files([&] { return nlos::read_volume(path); }); },

@@ -55,7 +55,7 @@ template <class Visitor>
 void for_each_field(ObjectFields& s, Visitor&& visit) {
     renderer::Material& material = s.object.material;
     visit("name", s.object.name, "of the object");
-    visit("albedo", material.albedo, core::between(0, 1, "share of light that is reflected"));
+    visit("albedo", material.albedo, core::between(0, 1, "fraction of light that is reflected"));
     visit("surface", material.model, "how it reflects");
     visit("roughness", material.roughness, core::between(0, 1, "of models with a lobe"));
     visit("role", s.object.role, "what it is to the measurement");

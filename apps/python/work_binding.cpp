@@ -98,7 +98,7 @@ core::Capture simulate_noise(const core::Capture& capture,
     if (of_sensor) {
         sensor = core::recorded_sensor(capture);
         if (!sensor) {
-            throw core::Error("sensor", "the capture states none", "must be False for other scans");
+            throw core::Error("sensor", "the capture gives none", "must be False for other scans");
         }
     }
     auto settings = settings_from_python(

@@ -19,7 +19,7 @@ std::vector<std::vector<ScoredResult>> groups_by_threshold(const std::vector<Sco
 std::string metrics_table(const std::vector<ScoredResult>& scores);
 
 /// Headline figures of the result with the highest F-score: what of the truth it found, what of it
-/// is true, and its depth error with the share of the surface that this is of. Nothing without
+/// is true, and its depth error with the fraction of the surface that this is of. Nothing without
 /// F-scores.
 std::string metrics_tiles(const std::vector<ScoredResult>& scores);
 

@@ -2,9 +2,9 @@
 #include "apps/report/report.h"
 
 #include "apps/page/html.h"
-#include "apps/report/bench_cards.h"
-#include "apps/report/lead.h"
+#include "apps/report/bench_panels.h"
 #include "apps/report/metrics_table.h"
+#include "apps/report/summary.h"
 #include "apps/version.h"
 #include "renderer/core/settings/json_file.h"
 #include "renderer/core/system/output_file.h"
@@ -49,22 +49,22 @@ std::string folded_html(const std::string& title, const std::string& content) {
     return fmt::format("<details><summary>{}</summary>{}</details>\n", escape_html(title), content);
 }
 
-std::string picture_html(const ResultCard& card, const std::string& picture_of) {
-    if (card.picture_png.empty()) return "";
-    return "<figure>" + embedded_image(card.picture_png, kPng, picture_of + " of " + card.file) +
+std::string picture_html(const ResultPanel& panel, const std::string& picture_of) {
+    if (panel.picture_png.empty()) return "";
+    return "<figure>" + embedded_image(panel.picture_png, kPng, picture_of + " of " + panel.file) +
            "</figure>\n";
 }
 
-/// A card: its heading, what is seen of it, facts, and the rest folded.
-std::string card_html(const ResultCard& card,
-                      const std::string& seen,
-                      const std::string& folded = "") {
-    const bool has_label = !card.label.empty();
+/// A panel: its heading, what is seen of it, facts, and the rest folded.
+std::string panel_html(const ResultPanel& panel,
+                       const std::string& seen,
+                       const std::string& folded = "") {
+    const bool has_label = !panel.label.empty();
     return fmt::format("<article><h3>{}{}</h3>\n",
-                       escape_html(has_label ? card.label : card.file),
-                       has_label ? "<small>" + escape_html(card.file) + "</small>" : "") +
-           seen + facts_html(card.facts) + notes_html(card.notes) + folded +
-           details_html("Settings and provenance", card.settings) + "</article>\n";
+                       escape_html(has_label ? panel.label : panel.file),
+                       has_label ? "<small>" + escape_html(panel.file) + "</small>" : "") +
+           seen + facts_html(panel.facts) + notes_html(panel.notes) + folded +
+           details_html("Settings and provenance", panel.settings) + "</article>\n";
 }
 
 /// A section with an anchor; nothing when it has no content.
@@ -93,7 +93,7 @@ std::string comparisons_html(const ResultsFolder& results) {
     std::string html;
     for (const ScoredResult& scored : results.scores) {
         const bool is_volume = std::any_of(
-            results.volumes.begin(), results.volumes.end(), [&](const ResultCard& volume) {
+            results.volumes.begin(), results.volumes.end(), [&](const ResultPanel& volume) {
                 return volume.file == scored.result;
             });
         if (scored.picture_png.empty() || (is_volume && results.views.truth)) continue;
@@ -108,16 +108,17 @@ std::string comparisons_html(const ResultsFolder& results) {
     return html;
 }
 
-std::string cards_html(const std::vector<ResultCard>& cards, const std::string& picture_of) {
+std::string panels_html(const std::vector<ResultPanel>& panels, const std::string& picture_of) {
     std::string html;
-    for (const ResultCard& card : cards) html += card_html(card, picture_html(card, picture_of));
+    for (const ResultPanel& panel : panels)
+        html += panel_html(panel, picture_html(panel, picture_of));
     return html;
 }
 
-std::string reconstructions_html(const std::vector<ResultCard>& volumes) {
+std::string reconstructions_html(const std::vector<ResultPanel>& volumes) {
     std::string html;
-    for (const ResultCard& volume : volumes) {
-        html += card_html(
+    for (const ResultPanel& volume : volumes) {
+        html += panel_html(
             volume,
             "",
             folded_html("Projections and depth as a picture", picture_html(volume, "Projections")));
@@ -126,10 +127,10 @@ std::string reconstructions_html(const std::vector<ResultCard>& volumes) {
 }
 
 /// Captures, each with its animation.
-std::string captures_html(const std::vector<ResultCard>& captures) {
+std::string captures_html(const std::vector<ResultPanel>& captures) {
     std::string html;
     for (std::size_t i = 0; i < captures.size(); ++i) {
-        html += card_html(
+        html += panel_html(
             captures[i],
             view_html("animation", fmt::format(" data-animation=\"{}\"", i)),
             folded_html("Streak image, light over the wall and mean transient as a picture",
@@ -165,9 +166,9 @@ std::string slices_html(const ResultsFolder& results) {
                        "Cuts through a volume at one voxel; click to move the cross.");
 }
 
-std::string dataset_html(const std::optional<DatasetCard>& dataset) {
+std::string dataset_html(const std::optional<DatasetPanel>& dataset) {
     if (!dataset) return "";
-    std::string html = card_html(dataset->card, picture_html(dataset->card, "First items"));
+    std::string html = panel_html(dataset->panel, picture_html(dataset->panel, "First items"));
     if (!dataset->histograms_png.empty()) {
         html += figure_html(embedded_image(dataset->histograms_png, kPng, "Histograms"),
                             "What was drawn, over all items.");
@@ -229,9 +230,9 @@ std::string anchor_of(std::string title) {
 std::string header_html(const ResultsFolder& results) {
     return fmt::format(
         "<header><p class=\"kicker\">Non-line-of-sight imaging</p><h1>{}</h1>"
-        "<p class=\"lead\">{}</p></header>\n",
+        "<p class=\"summary\">{}</p></header>\n",
         escape_html(results.name),
-        escape_html(lead_text(results)));
+        escape_html(summary_text(results)));
 }
 
 /// The titles of the sections that hold something.
@@ -254,8 +255,8 @@ std::vector<Section> sections_of(const ResultsFolder& results) {
             {"Ground truth", figures_html(results, FigureKind::Truth)},
             {"Captures", captures_html(results.captures)},
             {"Reconstructions", reconstructions_html(results.volumes)},
-            {"Fits", cards_html(results.fits, "Data, model and residual")},
-            {"Tracks", cards_html(results.tracks, "Plan and histograms")},
+            {"Fits", panels_html(results.fits, "Data, model and residual")},
+            {"Tracks", panels_html(results.tracks, "Plan and histograms")},
             {"Comparison with the truth", comparisons_html(results)},
             {"Speed against error", benches_html(results.benches)},
             {"Sweeps over settings", sweeps_html(results.sweeps)},

@@ -72,12 +72,12 @@ void read_measurement(const fs::path& path,
     const std::string name = path.filename().string();
     if (nlos::is_volume_file(path.string())) {
         const nlos::Reconstruction volume = nlos::read_volume(path.string());
-        results.volumes.push_back(volume_card(path.string(), volume));
+        results.volumes.push_back(volume_panel(path.string(), volume));
         results.views.results.push_back(result_view(volume, name));
         return;
     }
     const core::Capture capture = nlos::read_capture(path.string(), settings);
-    results.captures.push_back(capture_card(path.string(), capture));
+    results.captures.push_back(capture_panel(path.string(), capture));
     results.views.animations.push_back(animation_view(capture, name));
     const auto* points = capture.scan.as<core::WallScan>();
     if (!results.views.scan && points != nullptr) results.views.scan = *points;
@@ -89,11 +89,11 @@ void read_json(const fs::path& path, ResultsFolder& results) {
     if (is_metrics(json)) {
         results.scores.push_back(scored_result(path, json));
     } else if (calib::is_fit_file(path.string())) {
-        results.fits.push_back(fit_card(path.string(), json));
+        results.fits.push_back(fit_panel(path.string(), json));
     } else if (calib::is_track(json) && json.contains("track_of")) {
-        results.tracks.push_back(track_card(path.string(), json));
+        results.tracks.push_back(track_panel(path.string(), json));
     } else if (is_bench(json)) {
-        results.benches.push_back(read_bench_card(path.string(), json));
+        results.benches.push_back(read_bench_panel(path.string(), json));
     } else if (is_sweep(json)) {
         results.sweeps.push_back({name, std::move(json), {}});
     } else if (json.contains("hard_cases")) {
@@ -129,9 +129,9 @@ std::string without_folder(std::string message, const fs::path& folder) {
 void drop_accompanying_figures(ResultsFolder& results) {
     std::set<std::string> stems;
     const auto add = [&](const std::string& file) { stems.insert(fs::path(file).stem().string()); };
-    for (const auto* cards :
+    for (const auto* panels :
          {&results.captures, &results.volumes, &results.fits, &results.tracks}) {
-        for (const ResultCard& card : *cards) add(card.file);
+        for (const ResultPanel& panel : *panels) add(panel.file);
     }
     for (const ScoredResult& scored : results.scores) add(scored.file);
     std::erase_if(results.figures, [&](const Figure& figure) {
@@ -145,7 +145,7 @@ void drop_accompanying_figures(ResultsFolder& results) {
 std::vector<std::string> named_scenes(const ResultsFolder& results) {
     std::vector<std::string> paths;
     for (const ScoredResult& scored : results.scores) paths.push_back(scored.reference_path);
-    for (const ResultCard& capture : results.captures) {
+    for (const ResultPanel& capture : results.captures) {
         if (!capture.settings.is_object()) continue;
         const auto scene = capture.settings.find("scene");
         if (scene != capture.settings.end() && scene->is_string()) paths.push_back(*scene);
@@ -186,10 +186,10 @@ std::size_t best_result(const ResultsFolder& results) {
 constexpr std::size_t kMostSettings = 2;  // in a label
 
 /// The settings of a result by their paths: `volume.voxels.0`.
-std::map<std::string, std::string> settings_of(const ResultCard& card) {
+std::map<std::string, std::string> settings_of(const ResultPanel& panel) {
     std::map<std::string, std::string> settings;
-    if (!card.settings.is_structured()) return settings;
-    const core::Json flat = card.settings.flatten();
+    if (!panel.settings.is_structured()) return settings;
+    const core::Json flat = panel.settings.flatten();
     for (const auto& [pointer, value] : flat.items()) {
         std::string path = pointer.substr(1);
         std::replace(path.begin(), path.end(), '/', '.');
@@ -198,34 +198,34 @@ std::map<std::string, std::string> settings_of(const ResultCard& card) {
     return settings;
 }
 
-/// The settings that differ between some of the cards.
-std::vector<std::string> differing(const std::vector<ResultCard*>& cards) {
+/// The settings that differ between some of the panels.
+std::vector<std::string> differing(const std::vector<ResultPanel*>& panels) {
     std::map<std::string, std::map<std::string, std::size_t>> values;
-    for (const ResultCard* card : cards) {
-        for (const auto& [path, value] : settings_of(*card)) ++values[path][value];
+    for (const ResultPanel* panel : panels) {
+        for (const auto& [path, value] : settings_of(*panel)) ++values[path][value];
     }
     std::vector<std::string> paths;
     for (const auto& [path, counts] : values) {
-        const bool same = counts.size() == 1 && counts.begin()->second == cards.size();
+        const bool same = counts.size() == 1 && counts.begin()->second == panels.size();
         if (!same && paths.size() < kMostSettings) paths.push_back(path);
     }
     return paths;
 }
 
-void tell_apart(const std::vector<ResultCard*>& cards) {
-    const std::vector<std::string> paths = differing(cards);
+void tell_apart(const std::vector<ResultPanel*>& panels) {
+    const std::vector<std::string> paths = differing(panels);
     std::map<std::string, std::size_t> count;
-    for (ResultCard* card : cards) {
-        const std::map<std::string, std::string> settings = settings_of(*card);
+    for (ResultPanel* panel : panels) {
+        const std::map<std::string, std::string> settings = settings_of(*panel);
         for (const std::string& path : paths) {
             const auto found = settings.find(path);
-            if (found != settings.end()) card->label += ", " + path + " " + found->second;
+            if (found != settings.end()) panel->label += ", " + path + " " + found->second;
         }
-        ++count[card->label];
+        ++count[panel->label];
     }
-    for (ResultCard* card : cards) {
-        if (count[card->label] == 1) continue;
-        card->label += ", " + fs::path(card->file).stem().string();
+    for (ResultPanel* panel : panels) {
+        if (count[panel->label] == 1) continue;
+        panel->label += ", " + fs::path(panel->file).stem().string();
     }
 }
 
@@ -246,20 +246,20 @@ void complete(const fs::path& folder, const std::string& scene, ResultsFolder& r
 }  // namespace
 
 void label_by_method(ResultsFolder& results) {
-    std::map<std::string, std::vector<ResultCard*>> of_method;
+    std::map<std::string, std::vector<ResultPanel*>> of_method;
     for (std::size_t i = 0; i < results.volumes.size(); ++i) {
-        ResultCard& card = results.volumes[i];
-        card.label = results.views.results[i].name;
-        if (!card.label.empty()) of_method[card.label].push_back(&card);
+        ResultPanel& panel = results.volumes[i];
+        panel.label = results.views.results[i].name;
+        if (!panel.label.empty()) of_method[panel.label].push_back(&panel);
     }
-    for (const auto& [method, cards] : of_method) {
-        if (cards.size() > 1) tell_apart(cards);
+    for (const auto& [method, panels] : of_method) {
+        if (panels.size() > 1) tell_apart(panels);
     }
     for (std::size_t i = 0; i < results.volumes.size(); ++i) {
-        const ResultCard& card = results.volumes[i];
-        results.views.results[i].name = card.label.empty() ? card.file : card.label;
+        const ResultPanel& panel = results.volumes[i];
+        results.views.results[i].name = panel.label.empty() ? panel.file : panel.label;
         for (ScoredResult& scored : results.scores) {
-            if (scored.result == card.file && !card.label.empty()) scored.name = card.label;
+            if (scored.result == panel.file && !panel.label.empty()) scored.name = panel.label;
         }
     }
 }
@@ -271,7 +271,7 @@ ResultsFolder read_results_folder(const std::string& folder, const std::string& 
     }
     ResultsFolder results;
     results.name = fs::canonical(folder).filename().string();
-    if (is_dataset(folder)) results.dataset = dataset_card(folder);
+    if (is_dataset(folder)) results.dataset = dataset_panel(folder);
     for (const fs::path& path : visible_files(folder)) {
         if (results.dataset && belongs_to_dataset(path.filename().string())) continue;
         try {

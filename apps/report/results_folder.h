@@ -2,10 +2,10 @@
 #pragma once
 
 #include "apps/page/page_views.h"
-#include "apps/report/bench_cards.h"
-#include "apps/report/dataset_card.h"
-#include "apps/report/result_cards.h"
-#include "apps/report/sweep_cards.h"
+#include "apps/report/bench_panels.h"
+#include "apps/report/dataset_panel.h"
+#include "apps/report/result_panels.h"
+#include "apps/report/sweep_panels.h"
 #include "nlos/compare/compare.h"
 #include "nlos/formats/capture_file.h"
 #include "renderer/core/settings/json_file.h"
@@ -36,14 +36,14 @@ struct JsonDocument {
 /// What lies in a results folder, in the order of the files' names.
 struct ResultsFolder {
     std::string name;
-    std::optional<DatasetCard> dataset;  ///< when the folder holds one
+    std::optional<DatasetPanel> dataset;  ///< when the folder holds one
     std::vector<ScoredResult> scores;
-    std::vector<ResultCard> captures;
-    std::vector<ResultCard> volumes;
-    std::vector<ResultCard> fits;
-    std::vector<ResultCard> tracks;
-    std::vector<BenchCard> benches;
-    std::vector<SweepCard> sweeps;
+    std::vector<ResultPanel> captures;
+    std::vector<ResultPanel> volumes;
+    std::vector<ResultPanel> fits;
+    std::vector<ResultPanel> tracks;
+    std::vector<BenchPanel> benches;
+    std::vector<SweepPanel> sweeps;
     core::Json hard_cases;        ///< the table that hard_cases_tests --report writes; null: none
     std::vector<Figure> figures;  ///< but for those that belong to a file shown
     std::vector<JsonDocument> documents;

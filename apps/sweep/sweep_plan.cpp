@@ -34,8 +34,7 @@ std::string compact(const Json& json) {
 }
 
 void check_response(const core::ResponseSettings& response) {
-    if (core::is_stated(response) && !response.of_capture)
-        core::make_response(response, "response");
+    if (core::is_given(response) && !response.of_capture) core::make_response(response, "response");
 }
 
 }  // namespace
@@ -121,14 +120,14 @@ auto SweepPlan::read_part(const char* part, const Json& values, const Body& body
     try {
         return body(changes_of(part, values));
     } catch (const core::Error& error) {
-        std::string place;  // in the grid, as far as the part's settings depend on it
+        std::string position;  // in the grid, as far as the part's settings depend on it
         for (const auto& [key, value] : values.items()) {
             if (!belongs_to(key, part)) continue;
-            place +=
-                fmt::format("{}{} = {}", place.empty() ? " where " : ", ", key, compact(value));
+            position +=
+                fmt::format("{}{} = {}", position.empty() ? " where " : ", ", key, compact(value));
         }
         throw core::Error(fmt::format("{}: {}.{}", path_, part, error.where()),
-                          error.found() + place,
+                          error.found() + position,
                           error.allowed());
     }
 }

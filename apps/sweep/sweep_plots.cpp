@@ -97,7 +97,7 @@ struct MeanOfRuns {
 /// Means along x of the rows of one curve, by rising x after null.
 using Curve = std::map<std::optional<double>, MeanOfRuns>;
 
-/// The curves of the rows that agree in the values that the title of a picture states, by title;
+/// The curves of the rows that agree in the values that the title of a picture gives, by title;
 /// both in the order in which they come.
 using Curves = nlohmann::ordered_map<std::string, Curve>;
 using Pictures = nlohmann::ordered_map<std::string, Curves>;
@@ -115,8 +115,8 @@ OtherAxes other_axes(const SweepSettings& sweep, const std::string& against) {
         if (axis->values.size() < 2 || std::ranges::count(axis->keys, against) > 0) continue;
         num_curves *= axis->values.size();
         const bool fits = num_curves <= kMostCurves || others.of_curves.empty();
-        auto& place = fits ? others.of_curves : others.of_pictures;
-        place.insert(place.begin(), &*axis);
+        auto& others_of_kind = fits ? others.of_curves : others.of_pictures;
+        others_of_kind.insert(others_of_kind.begin(), &*axis);
     }
     return others;
 }
@@ -165,7 +165,7 @@ nlos::AxisScale scale_for(const std::vector<double>& values) {
                                                     : nlos::AxisScale::Linear;
 }
 
-/// Lengths and times differ by factors; shares, decibels and angles by differences.
+/// Lengths and times differ by factors; fractions, decibels and angles by differences.
 nlos::AxisScale y_scale_for(const std::string& metric, const std::vector<nlos::PlotLine>& lines) {
     if (!metric.ends_with("_m") && !metric.starts_with("seconds")) return nlos::AxisScale::Linear;
     std::vector<double> values;

@@ -14,7 +14,7 @@
 namespace apps {
 namespace {
 
-constexpr double kRenderShare = 0.5;  // of a run, for the bar
+constexpr double kRenderFraction = 0.5;  // of a run, for the bar
 
 /// Collects warnings in place of showing them, and announces nothing.
 core::Progress collecting(const core::Progress& progress, std::vector<std::string>& warnings) {
@@ -35,11 +35,11 @@ std::optional<SweepResult> SweepRunner::do_run(const SweepRun& run,
     SweepResult result;
     try {
         if (!rendered_ || rendered_->changes != run.scene_changes) {
-            render(run, progress.part(0.0, kRenderShare));
+            render(run, progress.part(0.0, kRenderFraction));
         }
         if (progress.should_stop()) return std::nullopt;
         draw_noise(run);
-        result = score(run, progress.part(kRenderShare, 1.0));
+        result = score(run, progress.part(kRenderFraction, 1.0));
     } catch (const core::Error& error) {
         result.failed = error.what();
     } catch (const core::Failure& failure) {

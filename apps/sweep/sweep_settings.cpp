@@ -46,9 +46,9 @@ std::vector<std::string> split_keys(const std::string& text, const std::string& 
 
 SweepAxis read_axis(const std::string& key, const core::Json& json, const std::string& where) {
     SweepAxis axis{split_keys(key, where), {}};
-    const std::string place = core::join_key(where, key);
+    const std::string key_path = core::join_key(where, key);
     if (!json.is_array() || json.empty()) {
-        core::throw_wrong_type(place, json, "a list of at least one value");
+        core::throw_wrong_type(key_path, json, "a list of at least one value");
     }
     for (const core::Json& value : json) {
         if (axis.keys.size() == 1) {
@@ -57,7 +57,7 @@ SweepAxis read_axis(const std::string& key, const core::Json& json, const std::s
         }
         if (!value.is_array() || value.size() != axis.keys.size()) {
             core::throw_wrong_type(
-                place, value, fmt::format("a list of {} values, one per key", axis.keys.size()));
+                key_path, value, fmt::format("a list of {} values, one per key", axis.keys.size()));
         }
         axis.values.emplace_back(value.begin(), value.end());
     }

@@ -63,9 +63,9 @@ Table table_of(const std::string& name, const std::vector<Cells>& rows) {
     for (const Cells& row : rows) {
         std::vector<std::string>& cells = table.rows.emplace_back(table.columns.size());
         for (const auto& [column, text] : row) {
-            const auto place = std::ranges::find(table.columns, column);
-            if (place == table.columns.end()) continue;
-            cells[static_cast<std::size_t>(place - table.columns.begin())] = text;
+            const auto found = std::ranges::find(table.columns, column);
+            if (found == table.columns.end()) continue;
+            cells[static_cast<std::size_t>(found - table.columns.begin())] = text;
         }
     }
     return table;

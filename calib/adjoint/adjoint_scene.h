@@ -2,7 +2,7 @@
 #pragma once
 
 #include "calib/adjoint/facet_tree.h"
-#include "calib/adjoint/piece_kernel.h"
+#include "calib/adjoint/part_kernel.h"
 #include "renderer/core/capture/capture.h"
 #include "renderer/core/mesh.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "calib/adjoint/piece_cutter.h"
+#include "calib/adjoint/polygon_clipper.h"
 
 namespace calib {
 namespace {
@@ -41,17 +41,18 @@ void CutPullback::start(std::span<const CutLine> lines) {
     by_heights_.assign(lines.size(), Vec3::Zero());
 }
 
-void CutPullback::add_piece(std::span<const PieceVertex> piece, std::span<const Vec3> by_shares) {
-    for (std::size_t i = 0; i < piece.size(); ++i) {
-        const std::uint32_t before = piece[i == 0 ? piece.size() - 1 : i - 1].line;
-        const std::uint32_t behind = piece[i].line;
+void CutPullback::add_polygon(std::span<const PolygonVertex> polygon,
+                              std::span<const Vec3> by_barycentrics) {
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const std::uint32_t before = polygon[i == 0 ? polygon.size() - 1 : i - 1].line;
+        const std::uint32_t behind = polygon[i].line;
         const bool is_element_corner = lines_[before].plane == CutPlane::ElementEdge &&
                                        lines_[behind].plane == CutPlane::ElementEdge;
         if (is_element_corner) continue;
         const Vec3& a = lines_[before].height_m;
         const Vec3& b = lines_[behind].height_m;
-        const double along = by_shares[i].dot(piece[i].share);
-        const Vec3 by_cross = (by_shares[i] - Vec3::Constant(along)) / a.cross(b).sum();
+        const double along = by_barycentrics[i].dot(polygon[i].barycentric);
+        const Vec3 by_cross = (by_barycentrics[i] - Vec3::Constant(along)) / a.cross(b).sum();
         by_heights_[before] += b.cross(by_cross);
         by_heights_[behind] += by_cross.cross(a);
     }

@@ -12,8 +12,8 @@ using core::Vec3;
 MeshElement element_of(const std::array<Vec3, 3>& facet, const ModelElement& part) {
     std::array<Vec3, 3> corners;
     for (std::size_t j = 0; j < 3; ++j) {
-        const Vec3& share = part.barycentric[j];
-        corners[j] = share[0] * facet[0] + share[1] * facet[1] + share[2] * facet[2];
+        const Vec3& weights = part.barycentric[j];
+        corners[j] = weights[0] * facet[0] + weights[1] * facet[1] + weights[2] * facet[2];
     }
     MeshElement element{part.facet, part.barycentric, element_shape(corners)};
     const Vec3 center = (corners[0] + corners[1] + corners[2]) / 3.0;

@@ -131,7 +131,7 @@ void OccluderViews::look_at(std::span<const MeshElement> elements) {
 
 void OccluderViews::remove_shadows(std::size_t index,
                                    const ElementView& view,
-                                   PieceCutter& pieces) const {
+                                   PolygonClipper& clipper) const {
     const double side = view.facing_m > 0.0 ? -1.0 : 1.0;
     std::array<Vec3, 3> inwards;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -146,8 +146,8 @@ void OccluderViews::remove_shadows(std::size_t index,
         if (candidate == elements_[index].facet || !occluder.hides) continue;
         if (is_beside(occluder, view, inwards)) continue;
         if (!shadow_lines(occluder, view, lines)) continue;
-        pieces.remove(lines);
-        if (pieces.empty()) return;
+        clipper.remove(lines);
+        if (clipper.empty()) return;
     }
 }
 

@@ -3,7 +3,7 @@
 
 #include "calib/adjoint/adjoint_scene.h"
 #include "calib/adjoint/facet_tree.h"
-#include "calib/adjoint/piece_cutter.h"
+#include "calib/adjoint/polygon_clipper.h"
 #include "renderer/core/mesh.h"
 
 #include <array>
@@ -40,7 +40,7 @@ class OccluderViews {
     /// Takes away what the mesh hides of element `index` of those looked at.
     ///
     /// view    of this element
-    void remove_shadows(std::size_t index, const ElementView& view, PieceCutter& pieces) const;
+    void remove_shadows(std::size_t index, const ElementView& view, PolygonClipper& clipper) const;
 
  private:
     struct Occluder {

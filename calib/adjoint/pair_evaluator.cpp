@@ -10,14 +10,16 @@ namespace {
 using core::Vec3;
 
 // Smaller parts of an element are rounding.
-constexpr double kSmallestShare = 1e-14;
+constexpr double kSmallestFraction = 1e-14;
 
-// Calls visit(i, shares) for the triangles (0, i, i + 1) of a convex polygon.
+// Calls visit(i, barycentrics) for the triangles (0, i, i + 1) of a convex polygon.
 template <class Visit>
-void for_each_part(std::span<const PieceVertex> piece, const Visit& visit) {
-    for (std::size_t i = 1; i + 1 < piece.size(); ++i) {
-        const PartShares shares{piece[0].share, piece[i].share, piece[i + 1].share};
-        if (shares[0].dot(shares[1].cross(shares[2])) > kSmallestShare) visit(i, shares);
+void for_each_part(std::span<const PolygonVertex> polygon, const Visit& visit) {
+    for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
+        const PartBarycentrics barycentrics{
+            polygon[0].barycentric, polygon[i].barycentric, polygon[i + 1].barycentric};
+        if (barycentrics[0].dot(barycentrics[1].cross(barycentrics[2])) > kSmallestFraction)
+            visit(i, barycentrics);
     }
 }
 
@@ -41,7 +43,7 @@ void PairEvaluator::look_at(std::size_t pair) {
         light_.is_confocal ? light_.ends[1].position : scan.illumination.positions[light];
     light_.ends[0].normal =
         light_.is_confocal ? light_.ends[1].normal : scan.illumination.normals[light];
-    light_.device_legs_m = scan.device_legs_m(pair);
+    light_.device_segments_m = scan.device_segments_m(pair);
     num_ends_ = light_.is_confocal ? 1 : 2;
     for (std::size_t end = 0; end < num_ends_; ++end) {
         views_[end].look_from(light_.ends[end], static_cast<std::uint8_t>(end));
@@ -53,7 +55,7 @@ bool PairEvaluator::may_be_on_axis(const MeshElement& element) const {
     constexpr double kReach = 7.0;  // of the response, in standard deviations
     const auto& c = element.shape.corners;
     const Vec3 center = (c[0] + c[1] + c[2]) / 3.0;
-    const double middle = light_.device_legs_m + (center - light_.ends[0].position).norm() +
+    const double middle = light_.device_segments_m + (center - light_.ends[0].position).norm() +
                           (center - light_.ends[1].position).norm();
     const double reach = 3.0 * element.radius_m + kReach * light_.sigma_m;
     return middle + reach > light_.axis.opl_start_m && middle - reach < light_.axis.opl_end_m();
@@ -68,12 +70,12 @@ bool PairEvaluator::find_views(const MeshElement& element) {
     return num_ends_ == 1 || seen_[0].facing_m * seen_[1].facing_m > 0.0;
 }
 
-// Cuts an element into its visible pieces; false when there are none.
+// Cuts an element into its visible polygons; false when there are none.
 //
 // index   among the elements that the views look at
 bool PairEvaluator::cut(const MeshElement& element, std::size_t index) {
     if (!may_be_on_axis(element) || !find_views(element)) return false;
-    pieces_.start(std::max(seen_[0].margin_m, seen_[num_ends_ - 1].margin_m));
+    clipper_.start(std::max(seen_[0].margin_m, seen_[num_ends_ - 1].margin_m));
     for (std::size_t end = 0; end < num_ends_; ++end) {
         CutLine tangent;
         tangent.plane = CutPlane::WallTangent;
@@ -83,12 +85,12 @@ bool PairEvaluator::cut(const MeshElement& element, std::size_t index) {
                 light_.ends[end].normal.dot(seen_[end].corners[static_cast<std::size_t>(i)]);
         }
         if (tangent.height_m.maxCoeff() <= 0.0) return false;
-        if (tangent.height_m.minCoeff() < 0.0) pieces_.keep_above(tangent);
+        if (tangent.height_m.minCoeff() < 0.0) clipper_.keep_above(tangent);
     }
-    for (std::size_t end = 0; end < num_ends_ && !pieces_.empty(); ++end) {
-        views_[end].remove_shadows(index, seen_[end], pieces_);
+    for (std::size_t end = 0; end < num_ends_ && !clipper_.empty(); ++end) {
+        views_[end].remove_shadows(index, seen_[end], clipper_);
     }
-    return !pieces_.empty();
+    return !clipper_.empty();
 }
 
 // Calls visit(i) for each element that is seen, once it is cut.
@@ -108,7 +110,7 @@ void PairEvaluator::for_each_visible(std::span<const ElementVisibility> known, c
             const ElementVisibility seen = knowledge(begin + i);
             if (seen == ElementVisibility::Hidden) continue;
             if (seen == ElementVisibility::Whole) {
-                pieces_.start(0.0);
+                clipper_.start(0.0);
                 visit(begin + i);
                 continue;
             }
@@ -128,14 +130,15 @@ void PairEvaluator::add(std::size_t pair,
     std::fill(seen.begin(), seen.end(), ElementVisibility::Hidden);
     for_each_visible({}, [&](std::size_t index) {
         if (!seen.empty()) {
-            seen[index] = pieces_.is_whole() ? ElementVisibility::Whole : ElementVisibility::Part;
+            seen[index] = clipper_.is_whole() ? ElementVisibility::Whole : ElementVisibility::Part;
         }
         const MeshElement& element = scene_.elements[index];
         const double albedo = scene_.albedo[element.facet];
-        for (std::size_t i = 0; i < pieces_.num_pieces(); ++i) {
-            for_each_part(pieces_.piece(i), [&](std::size_t, const PartShares& shares) {
-                kernel_.add(element.shape, shares, albedo, histogram);
-            });
+        for (std::size_t i = 0; i < clipper_.num_polygons(); ++i) {
+            for_each_part(clipper_.polygon(i),
+                          [&](std::size_t, const PartBarycentrics& barycentrics) {
+                              kernel_.add(element.shape, barycentrics, albedo, histogram);
+                          });
         }
     });
 }
@@ -155,19 +158,19 @@ void PairEvaluator::pull_element(const MeshElement& element,
                                  MeshGradients& gradients) {
     const double albedo = scene_.albedo[element.facet];
     ShapeGradients by_shape;
-    PartShares by_part;
-    cuts_.start(pieces_.lines());
-    for (std::size_t i = 0; i < pieces_.num_pieces(); ++i) {
-        const auto piece = pieces_.piece(i);
-        by_shares_.assign(piece.size(), Vec3::Zero());
-        for_each_part(piece, [&](std::size_t k, const PartShares& shares) {
+    PartBarycentrics by_part;
+    cuts_.start(clipper_.lines());
+    for (std::size_t i = 0; i < clipper_.num_polygons(); ++i) {
+        const auto polygon = clipper_.polygon(i);
+        by_barycentrics_.assign(polygon.size(), Vec3::Zero());
+        for_each_part(polygon, [&](std::size_t k, const PartBarycentrics& barycentrics) {
             gradients.albedo[element.facet] +=
-                kernel_.pull(element.shape, shares, albedo, by_value, by_shape, by_part);
-            by_shares_[0] += by_part[0];
-            by_shares_[k] += by_part[1];
-            by_shares_[k + 1] += by_part[2];
+                kernel_.pull(element.shape, barycentrics, albedo, by_value, by_shape, by_part);
+            by_barycentrics_[0] += by_part[0];
+            by_barycentrics_[k] += by_part[1];
+            by_barycentrics_[k + 1] += by_part[2];
         });
-        cuts_.add_piece(piece, by_shares_);
+        cuts_.add_polygon(polygon, by_barycentrics_);
     }
     std::array<Vec3, 3> by_corners = by_shape.by_corners(element.shape);
     cuts_.finish(
@@ -186,8 +189,8 @@ std::vector<double> PairEvaluator::visible_areas(std::size_t pair) {
     std::vector<double> areas(scene_.mesh.triangles.size(), 0.0);
     for_each_visible({}, [&](std::size_t index) {
         const MeshElement& element = scene_.elements[index];
-        for (std::size_t i = 0; i < pieces_.num_pieces(); ++i) {
-            for_each_part(pieces_.piece(i), [&](std::size_t, const PartShares& s) {
+        for (std::size_t i = 0; i < clipper_.num_polygons(); ++i) {
+            for_each_part(clipper_.polygon(i), [&](std::size_t, const PartBarycentrics& s) {
                 areas[element.facet] += element.shape.area_m2 * s[0].dot(s[1].cross(s[2]));
             });
         }

@@ -3,8 +3,8 @@
 
 #include "calib/adjoint/adjoint_scene.h"
 #include "calib/adjoint/occluder_views.h"
-#include "calib/adjoint/piece_cutter.h"
-#include "calib/adjoint/piece_kernel.h"
+#include "calib/adjoint/part_kernel.h"
+#include "calib/adjoint/polygon_clipper.h"
 
 #include <array>
 #include <span>
@@ -54,11 +54,11 @@ class PairEvaluator {
     PairLight light_;
     std::size_t num_ends_ = 1;
     std::vector<OccluderViews> views_;  ///< per end
-    PieceKernel kernel_;
-    PieceCutter pieces_;
+    PartKernel kernel_;
+    PolygonClipper clipper_;
     CutPullback cuts_;
     std::array<ElementView, 2> seen_;  ///< of one element, per end
-    std::vector<core::Vec3> by_shares_;
+    std::vector<core::Vec3> by_barycentrics_;
 };
 
 }  // namespace calib

@@ -32,7 +32,7 @@ namespace {
 constexpr std::size_t kMaxNamed = 8;
 
 void warn_of_cut_light(const core::TimeAxis& axis, double ambient, FitResult& result) {
-    constexpr double kNotableShare = 0.05;
+    constexpr double kNotableFraction = 0.05;
     const auto bins = static_cast<std::size_t>(result.axis.num_bins);
     const auto pairs = static_cast<double>(result.model.size() / bins);
     double most = 0.0;
@@ -44,7 +44,7 @@ void warn_of_cut_light(const core::TimeAxis& axis, double ambient, FitResult& re
         for (std::size_t b = 0; b < bins; ++b) most = std::max(most, result.model[i + b]);
     }
     const auto warn = [&](double light, const char* end, double opl_m) {
-        if (light - ambient <= kNotableShare * most) return;
+        if (light - ambient <= kNotableFraction * most) return;
         result.warnings.push_back(fmt::format(
             "the model's light reaches beyond the {} of the time axis at {:.3f} m; what "
             "lies there is not fitted",
@@ -115,7 +115,7 @@ void warn_of_deviance(const FitDriver& driver, double min_mean, FitResult& resul
             wild > kMaxNamed ? ", ..." : "",
             has_loss
                 ? "the loss gives them little weight"
-                : "true errors exceed the stated ones; loss: cauchy gives them little weight"));
+                : "true errors exceed the reported ones; loss: cauchy gives them little weight"));
     }
     const double excess = are_outliers ? rest.sigmas()
                                        : (result.deviance - result.expected_deviance) /
@@ -123,7 +123,7 @@ void warn_of_deviance(const FitDriver& driver, double min_mean, FitResult& resul
     if (excess <= kNotableExcess) return;
     result.warnings.push_back(
         fmt::format("the deviance exceeds its expectation by {:.1f} standard deviations: the model "
-                    "does not explain the data, and true errors exceed the stated ones",
+                    "does not explain the data, and true errors exceed the reported ones",
                     excess));
 }
 
@@ -150,15 +150,15 @@ void check_for_light(double min_mean, FitResult& result) {
 // A residual that is alike from bin to bin and large comes from a model that is none of the scene.
 void warn_of_patterns(FitResult& result) {
     constexpr double kNotableCorrelation = 0.3;
-    constexpr double kNotableShare = 1e-3;  // of the data's energy
+    constexpr double kNotableFraction = 1e-3;  // of the data's energy
     double energy = 0.0;
     for (const double value : result.data) energy += value * value;
     const double correlation = residual_correlation(result);
-    if (correlation < kNotableCorrelation || result.deviance < kNotableShare * energy) return;
+    if (correlation < kNotableCorrelation || result.deviance < kNotableFraction * energy) return;
     result.warnings.push_back(
         fmt::format("the residual holds {:.1f} % of the data's energy and is alike between "
                     "neighbours (correlation {:.2f}): the model does not explain the data, and "
-                    "true errors exceed the stated ones",
+                    "true errors exceed the reported ones",
                     100.0 * result.deviance / energy,
                     correlation));
 }
@@ -248,9 +248,9 @@ void add_warnings(const FitDriver& driver,
 
 void check_dependence(const SceneModel& model, FitResult& result) {
     for (const ParameterBlock& block : model.blocks()) {
-        const bool is_place =
+        const bool is_position =
             block.row->effect == Effect::Translates || block.row->effect == Effect::Rotates;
-        if (!is_place || result.sigma.segment(block.first_column, block.columns).allFinite())
+        if (!is_position || result.sigma.segment(block.first_column, block.columns).allFinite())
             continue;
         result.converged = false;
         result.message = "the light of " +

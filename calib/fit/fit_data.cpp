@@ -147,7 +147,7 @@ FitData trim(const FitData& data, int front, int back) {
 
 std::array<bool, 2> light_is_cut(const FitData& data, double ambient) {
     constexpr std::size_t kEdgeBins = 2;
-    constexpr double kShareOfBrightest = 0.05;
+    constexpr double kFractionOfBrightest = 0.05;
     constexpr double kSignificance = 5.0;
     const auto bins = static_cast<std::size_t>(data.axis.num_bins);
     const ObservedSums all = observed_sums(data, bins);
@@ -162,7 +162,7 @@ std::array<bool, 2> light_is_cut(const FitData& data, double ambient) {
             light += light_in(b);
             counted += all.sums[b];
         }
-        return light > kShareOfBrightest * static_cast<double>(width) * brightest &&
+        return light > kFractionOfBrightest * static_cast<double>(width) * brightest &&
                light > kSignificance * std::sqrt(counted);
     };
     return {stands_out(0), stands_out(bins - width)};

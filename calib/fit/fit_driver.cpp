@@ -179,7 +179,7 @@ FitDriver::FitDriver(const FitInput& fit_input, const core::Progress& progress)
     data.min_mean = 1e-6 * total / static_cast<double>(data.num_observed());
     offset_m = input.offset_m;
     for (std::size_t pair = 0; offset_m.size() < input.capture.scan.num_pairs(); ++pair) {
-        offset_m.push_back(input.capture.scan.wall().device_legs_m(pair));
+        offset_m.push_back(input.capture.scan.wall().device_segments_m(pair));
     }
 
     scale_is_unknown = input.capture.unit == core::TransientUnit::Counts &&
@@ -264,7 +264,7 @@ FitDriver::Stage FitDriver::make_stage(const SceneModel& free_model,
     forward.axis = stage.data->axis;
     forward.bins_per_ambient = merged;
     forward.sigma_m = sigma_m;
-    forward.response_share =
+    forward.response_fraction =
         sigma_m > 0.0 ? response_sigma_m * response_sigma_m / (sigma_m * sigma_m) : 1.0;
     // Under a wide blur the shape of the response does not matter, only its width and mean.
     const bool is_gaussian = std::holds_alternative<core::GaussianResponse>(response);

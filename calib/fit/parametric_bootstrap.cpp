@@ -15,13 +15,13 @@ constexpr std::uint64_t kRefitSeed = 0x7265666974;
 
 // Inversion of the distribution function: means are far below 1 where there are few photons.
 double draw_count(core::Rng& rng, double mean) {
-    double share = std::exp(-mean);
-    double rest = rng.uniform() - share;
+    double probability = std::exp(-mean);
+    double rest = rng.uniform() - probability;
     double count = 0.0;
-    while (rest > 0.0 && share > 0.0) {
+    while (rest > 0.0 && probability > 0.0) {
         count += 1.0;
-        share *= mean / count;
-        rest -= share;
+        probability *= mean / count;
+        rest -= probability;
     }
     return count;
 }

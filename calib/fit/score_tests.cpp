@@ -44,14 +44,14 @@ double fall_along(const SceneModel& model,
                   const FitDriver::Stage& stage,
                   const SceneState& state,
                   const Eigen::VectorXd& step) {
-    const auto deviance = [&](double share) {
-        stage.objective->evaluate(moved_by(model, state, share * step),
+    const auto deviance = [&](double fraction) {
+        stage.objective->evaluate(moved_by(model, state, fraction * step),
                                   renderer::Gradients::Without);
         return stage.objective->sum_of_squares();
     };
     const double here = deviance(0.0);
     double least = here;
-    for (const double share : {1.0, 0.5, 0.25}) least = std::min(least, deviance(share));
+    for (const double fraction : {1.0, 0.5, 0.25}) least = std::min(least, deviance(fraction));
     return here - least;
 }
 

@@ -8,7 +8,7 @@
 #include <Eigen/Dense>
 
 // What becomes of the last stage's solution: it is refined, its values and their scatter are
-// stated, and what casts doubt on them is named.
+// reported, and what casts doubt on them is named.
 namespace calib {
 
 /// What the data say of the free parameters at a solution.
@@ -54,7 +54,7 @@ FittedValues fitted_values(const FitDriver& driver,
                            double noise_variance);
 
 /// Scatter of refits to counts drawn from a fitted model: what the Fisher information, which holds
-/// for many photons, understates when there are few.
+/// for many photons, underestimates when there are few.
 ///
 /// stage    the last one, of Poisson data
 /// state    the fit; every refit starts from it and from its turned bodies, and keeps the best
@@ -73,9 +73,9 @@ inline constexpr double kNotableExcess = 5.0;
 /// left of noise-free data is the error of the capture and of the model's elements.
 double residual_correlation(const FitAgreement& fit);
 
-/// Adds warnings of what makes a fit's stated errors doubtful: light beyond the axis, bounds, data
-/// that the model does not explain and what would explain them, wild wall points. Without light of
-/// the model in the data, result.converged becomes false.
+/// Adds warnings of what makes a fit's reported errors doubtful: light beyond the axis, bounds,
+/// data that the model does not explain and what would explain them, wild wall points. Without
+/// light of the model in the data, result.converged becomes false.
 ///
 /// stage    the last one
 /// result   with model and deviance

@@ -2,8 +2,8 @@
 // What one element or point adds to one pair: the chain rule from wall points, corners and normals
 // to the knots of the kernel.
 #include "calib/forward/forward_model.h"
-#include "calib/forward/knot_changes.h"
-#include "calib/forward/path_legs.h"
+#include "calib/forward/knot_derivatives.h"
+#include "calib/forward/path_segments.h"
 
 #include <array>
 #include <cmath>
@@ -15,26 +15,26 @@ namespace {
 using core::Vec3;
 using renderer::Gradients;
 
-enum class LegPair { Retroreflected, Confocal, Apart };
+enum class SegmentPair { Retroreflected, Confocal, Apart };
 
 // Paths by way of an element's nodes.
 // Returns false where one of the wall points looks at the element's back.
 bool find_paths(const PathEndpoints& ends,
                 const std::array<Vec3, 6>& nodes,
                 const Vec3& normal,
-                LegPair legs,
+                SegmentPair segments,
                 Gradients gradients,
                 std::array<Path, 6>& paths) {
     for (std::size_t i = 0; i < 6; ++i) {
-        const Leg sensor = make_leg(*ends.sensor, nodes[i], normal, gradients);
-        if (legs == LegPair::Retroreflected) {
+        const Segment sensor = make_segment(*ends.sensor, nodes[i], normal, gradients);
+        if (segments == SegmentPair::Retroreflected) {
             paths[i] = retroreflected(sensor, gradients);
-        } else if (legs == LegPair::Confocal) {
-            paths[i] = join_legs(sensor, sensor, gradients);
+        } else if (segments == SegmentPair::Confocal) {
+            paths[i] = join_segments(sensor, sensor, gradients);
         } else {
-            const Leg light = make_leg(*ends.light, nodes[i], normal, gradients);
+            const Segment light = make_segment(*ends.light, nodes[i], normal, gradients);
             if (light.side != sensor.side) return false;
-            paths[i] = join_legs(light, sensor, gradients);
+            paths[i] = join_segments(light, sensor, gradients);
         }
     }
     return true;
@@ -68,7 +68,7 @@ void ForwardModel::add_gradients(const renderer::TriangleBins& bins,
         }
         for (const int column : factors) row[column] += s[0];
         for (const int column : columns_.time_shifts) row[column] += s[1] + s[2] + s[3];
-        for (const int column : columns_.widths) row[column] += width_share_ * s[7];
+        for (const int column : columns_.widths) row[column] += width_fraction_ * s[7];
     }
 }
 
@@ -79,11 +79,11 @@ void ForwardModel::add_element(const PosedElement& element,
     const PathEndpoints ends{&moved_points_[light_index(pair)], &moved_points_[sensor_index(pair)]};
     const bool is_confocal = scan_.pattern == core::ScanPattern::Confocal;
     if (element.is_retroreflective && !is_confocal) return;
-    const LegPair legs = element.is_retroreflective ? LegPair::Retroreflected
-                         : is_confocal              ? LegPair::Confocal
-                                                    : LegPair::Apart;
+    const SegmentPair segments = element.is_retroreflective ? SegmentPair::Retroreflected
+                                 : is_confocal              ? SegmentPair::Confocal
+                                                            : SegmentPair::Apart;
     std::array<Path, 6> paths;
-    if (!find_paths(ends, element.nodes, element.normal, legs, gradients_, paths)) return;
+    if (!find_paths(ends, element.nodes, element.normal, segments, gradients_, paths)) return;
     const KnotFit fit = fit_knots(paths, time_shift_m_ + settings_.offset_m[pair], element.weight);
     const VisibleWeights visible(fit.knots().weight, mask);
     thread_local renderer::TriangleBins bins;
@@ -130,10 +130,10 @@ void ForwardModel::add_element(const PosedElement& element,
 void ForwardModel::add_point(std::size_t index, std::size_t pair, PairModel& result) const {
     const PathEndpoints ends{&moved_points_[light_index(pair)], &moved_points_[sensor_index(pair)]};
     const PointState& point = state_.points[index];
-    Leg light = make_point_leg(*ends.light, point.position_m);
-    Leg sensor = make_point_leg(*ends.sensor, point.position_m);
+    Segment light = make_point_segment(*ends.light, point.position_m);
+    Segment sensor = make_point_segment(*ends.sensor, point.position_m);
     light.by_normal = sensor.by_normal = Vec3::Zero();
-    const Path path = join_legs(light, sensor, Gradients::With);
+    const Path path = join_segments(light, sensor, Gradients::With);
     const double constant = point_factors_[index] * settings_.radiance_factor;
     const double opl = path.opl + time_shift_m_ + settings_.offset_m[pair];
 

@@ -121,10 +121,11 @@ void ForwardModel::update(const SceneState& state, Gradients gradients) {
     point_factors_ = factors_of(state, Owner::Point, state.points);
     const double width = std::exp(sum_of(state, Owner::Scene, 0, Effect::WidensResponse));
     const double response2 =
-        settings_.response_share * settings_.sigma_m * settings_.sigma_m * width * width;
-    const double blur2 = (1.0 - settings_.response_share) * settings_.sigma_m * settings_.sigma_m;
+        settings_.response_fraction * settings_.sigma_m * settings_.sigma_m * width * width;
+    const double blur2 =
+        (1.0 - settings_.response_fraction) * settings_.sigma_m * settings_.sigma_m;
     sigma_m_ = settings_.measured ? 0.0 : std::sqrt(response2 + blur2);
-    width_share_ = sigma_m_ > 0.0 ? response2 / (response2 + blur2) : 0.0;
+    width_fraction_ = sigma_m_ > 0.0 ? response2 / (response2 + blur2) : 0.0;
     moved_points_ = wall_.moved(wall_points_, state);
     posed_.clear();
     posed_.reserve(elements_.size());
@@ -147,7 +148,7 @@ ForwardModel::PosedElement ForwardModel::pose(const ModelElement& element,
     PosedElement posed;
     posed.normal = across / norm;
     posed.is_retroreflective = facet.is_retroreflective;
-    posed.weight = 0.5 * norm * element.area_share * facet.albedo_ratio *
+    posed.weight = 0.5 * norm * element.area_fraction * facet.albedo_ratio *
                    body_factors_[facet.body] * settings_.radiance_factor;
     if (posed.is_retroreflective) posed.weight *= core::kPi / settings_.spot_m2;
     const auto interpolate = [&](const std::array<Vec3, 3>& corners, std::array<Vec3, 6>& nodes) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "calib/forward/knot_changes.h"
+#include "calib/forward/knot_derivatives.h"
 #include "calib/forward/model_elements.h"
 #include "calib/model/scene_model.h"
 #include "renderer/core/capture/capture.h"
@@ -16,9 +16,9 @@ namespace calib {
 /// How the model's light becomes data.
 struct ForwardSettings {
     core::TimeAxis axis;
-    int bins_per_ambient = 1;     ///< bins of the capture in one bin of the axis
-    double sigma_m = 0.0;         ///< Gaussian response and blur together, in path length
-    double response_share = 1.0;  ///< of sigma^2 that is the response's
+    int bins_per_ambient = 1;        ///< bins of the capture in one bin of the axis
+    double sigma_m = 0.0;            ///< Gaussian response and blur together, in path length
+    double response_fraction = 1.0;  ///< of sigma^2 that is the response's
     std::optional<core::InstrumentResponse> measured;  ///< instead of sigma_m: filtered
     double radiance_factor = 1.0;                      ///< Phi rho_w^2 / pi^3
     double spot_m2 = 1e-4;                             ///< returned by retroreflectors
@@ -104,7 +104,7 @@ class ForwardModel {
     /// How a parameter changes the knots of an element.
     struct ColumnChange {
         int column;
-        KnotChange change;
+        KnotDerivative change;
     };
 
     PosedElement pose(const ModelElement& element, const FacetMotion& motion) const;
@@ -144,7 +144,7 @@ class ForwardModel {
     std::vector<double> body_factors_;   ///< of each one's light
     std::vector<double> point_factors_;  ///< likewise
     double sigma_m_ = 0.0;               ///< at the present width
-    double width_share_ = 1.0;
+    double width_fraction_ = 1.0;
     std::vector<ModelElement> elements_;
     std::vector<PosedElement> posed_;
     /// Sensing points, then illumination points unless the scan is confocal.

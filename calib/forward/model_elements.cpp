@@ -47,15 +47,16 @@ void append_elements(const std::array<Vec3, 3>& corners,
     while (!stack.empty()) {
         const SplitElement candidate = stack.back();
         stack.pop_back();
-        const auto& shares = candidate.element.barycentric;
+        const auto& barycentrics = candidate.element.barycentric;
         std::size_t longest = 0;
         std::array<double, 3> squared{};
         for (std::size_t i = 0; i < 3; ++i) {
-            squared[i] = (position(shares[(i + 1) % 3]) - position(shares[i])).squaredNorm();
+            squared[i] =
+                (position(barycentrics[(i + 1) % 3]) - position(barycentrics[i])).squaredNorm();
             if (squared[i] > squared[longest]) longest = i;
         }
-        const double distance =
-            nearest_wall_point(scan, position((shares[0] + shares[1] + shares[2]) / 3.0));
+        const double distance = nearest_wall_point(
+            scan, position((barycentrics[0] + barycentrics[1] + barycentrics[2]) / 3.0));
         const double kappa = squared[longest] / (8.0 * distance * 0.5 * sigma_m);
         const bool is_small =
             kErrorPerKappa * kappa <= tolerance &&
@@ -68,10 +69,10 @@ void append_elements(const std::array<Vec3, 3>& corners,
             }
             continue;
         }
-        const Vec3 middle = 0.5 * (shares[longest] + shares[(longest + 1) % 3]);
+        const Vec3 middle = 0.5 * (barycentrics[longest] + barycentrics[(longest + 1) % 3]);
         SplitElement first = candidate;
         first.depth = candidate.depth + 1;
-        first.element.area_share = 0.5 * candidate.element.area_share;
+        first.element.area_fraction = 0.5 * candidate.element.area_fraction;
         SplitElement second = first;
         first.element.barycentric[(longest + 1) % 3] = middle;
         second.element.barycentric[longest] = middle;

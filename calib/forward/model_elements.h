@@ -16,7 +16,7 @@ namespace calib {
 struct ModelElement {
     std::uint32_t facet = 0;
     std::array<core::Vec3, 3> barycentric;
-    double area_share = 1.0;  ///< of the facet
+    double area_fraction = 1.0;  ///< of the facet
 };
 
 /// Cuts a triangle by bisection of its longest edges and appends its elements.

@@ -29,10 +29,10 @@ std::vector<Target> make_targets(const SceneModel& model,
         Target& target = targets.emplace_back();
         target.normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
         for (std::uint32_t part = 0; part < kParts; ++part) {
-            const auto& share = renderer::centers_of_bits()[part];
-            const Vec3 weights = share[0] * element.barycentric[0] +
-                                 share[1] * element.barycentric[1] +
-                                 share[2] * element.barycentric[2];
+            const auto& center = renderer::centers_of_bits()[part];
+            const Vec3 weights = center[0] * element.barycentric[0] +
+                                 center[1] * element.barycentric[1] +
+                                 center[2] * element.barycentric[2];
             target.centers[part] =
                 weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
         }

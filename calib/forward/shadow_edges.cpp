@@ -19,7 +19,7 @@ namespace {
 
 using core::Vec3;
 
-// Difference steps move no vertex farther than this share of an element's mean edge.
+// Difference steps move no vertex farther than this fraction of an element's mean edge.
 constexpr double kStepPerEdge = 0.25;
 
 }  // namespace
@@ -92,7 +92,7 @@ void ForwardModel::find_shadow_edges(const SceneState& state) {
     for (const ModelElement& element : elements_) {
         const auto corners = model_.motion(state, element.facet).corners;
         area +=
-            (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() * element.area_share;
+            (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() * element.area_fraction;
     }
     const double edge_m = std::sqrt(area / static_cast<double>(elements_.size()));
     const std::vector<double> speeds = vertex_speeds(state);

@@ -111,20 +111,20 @@ const char* free_help() {
 void read_value(const core::Json& json, const std::string& where, FreeSettings& free) {
     if (!json.is_object()) core::throw_wrong_type(where, json, "an object with named fields");
     for (const auto& [key, value] : json.items()) {
-        const std::string place = core::join_key(where, key);
+        const std::string key_path = core::join_key(where, key);
         const auto row =
             std::find_if(parameters().begin(), parameters().end(), [&](const Parameter* p) {
                 return p->owner == Owner::Scene && p->is_setting && key_of(*p) == key;
             });
         if (key == "point_scatterers") {
-            core::read_value(value, place, free.point_scatterers);
+            core::read_value(value, key_path, free.point_scatterers);
         } else if (row == parameters().end()) {
             std::set<std::string>& names = object_of_name(key, free).parameters;
-            read_names(value, place, free_names(Owner::Body), "", names);
+            read_names(value, key_path, free_names(Owner::Body), "", names);
         } else if (is_listed(**row)) {
-            read_names(value, place, names_in_list(key), key + ".", free.parameters);
+            read_names(value, key_path, names_in_list(key), key + ".", free.parameters);
         } else {
-            read_flag(**row, value, place, free);
+            read_flag(**row, value, key_path, free);
         }
     }
 }

@@ -15,8 +15,8 @@
 #include <vector>
 
 // What a fit can free. Each quantity is a row of facts and functions in a file of its own in
-// parameters/; parameters/parameters.cpp lists them all. Nothing else names one: states, settings, Jacobian,
-// priors, checks and FIT.json follow from the rows.
+// parameters/; parameters/parameters.cpp lists them all. Nothing else names one: states, settings,
+// Jacobian, priors, checks and FIT.json follow from the rows.
 namespace calib {
 
 /// What there is one quantity of.
@@ -48,11 +48,11 @@ struct PriorSettings {
 };
 
 /// A body where a state puts it, and one of its facets, which moves in columns from `column` on.
-struct BodyPlace {
+struct BodyPosition {
     const ModelBody& body;
     const BodyState& state;
 };
-struct FacetPlace : BodyPlace {
+struct FacetPosition : BodyPosition {
     const ModelFacet& facet;
     int column;
 };
@@ -87,9 +87,9 @@ struct Parameter {
     /// The start of a body's numbers, in place of `start` and `fixed`.
     void (*start_body)(const ModelBody& body, bool is_free, BodyState& state) = nullptr;
     /// Adds the derivatives of a facet's corners.
-    void (*move_facet)(const FacetPlace& at, FacetMotion& motion) = nullptr;
+    void (*move_facet)(const FacetPosition& at, FacetMotion& motion) = nullptr;
     /// Moves a wall point and adds the derivative to it.
-    void (*move_wall)(double number, const WallPlace& place, MovedWallPoint& point) = nullptr;
+    void (*move_wall)(double number, const WallPosition& at, MovedWallPoint& point) = nullptr;
     /// A prior that depends on the body.
     std::optional<LinearPrior> (*body_prior)(const ModelBody& body,
                                              const PriorSettings& settings) = nullptr;
@@ -99,7 +99,7 @@ struct Parameter {
     /// What results hold of a number 1, or of a logarithm 0; 1 if empty.
     double (*unit)(const FitSettings& settings) = nullptr;
     /// Writes itself, with standard deviations per column, in place of `key`.
-    void (*report_body)(const BodyPlace& at,
+    void (*report_body)(const BodyPosition& at,
                         std::span<const double> sigma,
                         FittedObject& object) = nullptr;
 

@@ -47,7 +47,7 @@ double farthest_vertex(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 }  // namespace
 
 bool are_different_poses(const SceneModel& model, const SceneState& a, const SceneState& b) {
-    constexpr double kOtherPlace = 0.1;
+    constexpr double kOtherPosition = 0.1;
     constexpr double kSameShape = 0.005;
     constexpr double kOtherTurn_rad = 0.35;
     for (std::size_t body = 0; body < model.bodies().size(); ++body) {
@@ -55,7 +55,7 @@ bool are_different_poses(const SceneModel& model, const SceneState& a, const Sce
         const double distance =
             farthest_vertex(vertices_of(model, a, body), vertices_of(model, b, body));
         const double angle = a.bodies[body].rotation.angularDistance(b.bodies[body].rotation);
-        if (distance > kOtherPlace || (distance > kSameShape && angle > kOtherTurn_rad))
+        if (distance > kOtherPosition || (distance > kSameShape && angle > kOtherTurn_rad))
             return true;
     }
     return false;

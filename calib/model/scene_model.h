@@ -78,7 +78,7 @@ bool are_different_poses(const SceneModel& model, const SceneState& a, const Sce
 /// body may end by mistake. Exact symmetries are left out.
 ///
 /// max_distance   between vertices of body and turned body that still nearly meet, over the extent
-/// returns         names, such as "target turned by 90 degrees", and states
+/// returns         names, such as "target turned by 90 degrees", and reports
 std::vector<std::pair<std::string, SceneState>> symmetric_poses(const SceneModel& model,
                                                                 const SceneState& state,
                                                                 double max_distance);

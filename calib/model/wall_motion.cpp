@@ -32,12 +32,12 @@ std::vector<MovedWallPoint> WallMotion::moved(const core::WallPoints& points,
     std::vector<MovedWallPoint> result;
     result.reserve(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const WallPlace place{
+        const WallPosition at{
             points.positions[i] - center_, points.normals[i], normal_, squared_radius_m2_};
         MovedWallPoint& target = result.emplace_back();
-        target.position = center_ + place.from_center_m;
-        target.normal = place.start_normal;
-        for (const auto& [row, number] : rows) row->move_wall(number, place, target);
+        target.position = center_ + at.from_center_m;
+        target.normal = at.start_normal;
+        for (const auto& [row, number] : rows) row->move_wall(number, at, target);
         const double length = target.normal.norm();
         target.normal.normalize();
         for (WallGradient& gradient : target.gradients) {

@@ -22,7 +22,7 @@ struct MovedWallPoint {
 };
 
 /// Where a point stands on the wall before it is moved.
-struct WallPlace {
+struct WallPosition {
     core::Vec3 from_center_m;
     core::Vec3 start_normal;
     core::Vec3 wall_normal;          ///< mean of all points'

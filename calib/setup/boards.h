@@ -75,7 +75,7 @@ struct Photograph {
     std::vector<std::uint8_t> grey;
 };
 
-/// Reads a PNG or JPEG file, of grey or colour, of 8 or 16 bits; alpha is left aside.
+/// Reads a PNG or JPEG file, of grey or colour, of 8 or 16 bits; alpha is ignored.
 ///
 /// throws    core::Error for other and damaged files, and for those with an EXIF orientation: a
 ///           camera is calibrated on its sensor's own grid, which turned views would mix up, while

@@ -83,7 +83,7 @@ std::vector<std::string> peak_warnings(const core::Capture& capture,
     const auto values = capture.transient.values();
     if (!std::ranges::all_of(values, [](float value) { return value == std::floor(value); })) {
         warnings.emplace_back(
-            "direct_returns hold numbers that are not whole: stated errors are those of as many "
+            "direct_returns hold numbers that are not whole: reported errors are those of as many "
             "counted photons");
     }
     const double excess = result.deviance - result.expected_deviance;

@@ -232,7 +232,7 @@ SetupVerdict judge_setup(const SetupObservations& o, OutlierRule rule) {
     if (!is_sound(rest, rest_fit)) {
         verdict.warnings.push_back(
             fmt::format("{}: the wall may not be flat, the beams not where the commands send them, "
-                        "or the peaks not of the shape of `response`; stated errors are {:.3g} "
+                        "or the peaks not of the shape of `response`; reported errors are {:.3g} "
                         "times larger for it, and true ones may exceed them",
                         misfit_text(rest, rest_fit),
                         verdict.sigma_scale));

@@ -25,7 +25,7 @@ struct SetupVerdict {
 /// Sound is what noise explains: photons counted, and light that was sorted into bins. Beyond that,
 /// in this order: single points far off; what may have been read wrongly (misreadings.h); known
 /// values that the rest contradicts; points that have nothing to do with the commands; and a misfit
-/// that none of these explains, by which the stated errors then grow.
+/// that none of these explains, by which the reported errors then grow.
 ///
 /// throws   core::Failure naming the cause where the values would mean nothing
 /// source   [Huber2009] for the weights of points far off; [Wilson1931] for chance

@@ -91,7 +91,7 @@ void store_points(const SetupObservations& o, SetupGeometry& setup) {
     }
 }
 
-// What counting leaves open; the misfit's share comes on top.
+// What counting leaves open; the misfit's fraction comes on top.
 void store_uncertainty(SetupGeometry& setup) {
     const SetupFit& fit = setup.verdict.fit;
     std::vector<std::string> names;

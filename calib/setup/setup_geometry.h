@@ -16,7 +16,7 @@ struct SetupGeometry {
     core::Vec3 device_m = core::Vec3::Zero();
     std::vector<core::Vec3> points_m;  ///< on the wall
     std::vector<double> point_sigma_m;
-    std::vector<double> opl_offset_m;  ///< time zero and both device legs, per point
+    std::vector<double> opl_offset_m;  ///< time zero and both device segments, per point
     std::vector<double> opl_offset_sigma_m;
     SetupVerdict verdict;  ///< `sigma` and the like are larger by its sigma_scale
     Uncertainty uncertainty;

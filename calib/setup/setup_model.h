@@ -55,9 +55,9 @@ Eigen::Matrix<T, 3, 1> spot_of(const T* p, const std::array<double, 2>& command,
     const Vector beam =
         rotated<T>(p, Vector(tan(p[kGainX] * command[0]), tan(p[kGainY] * command[1]), T(-1.0)));
     const Vector device = device_of(p);
-    const T share = -device[2] / beam[2];
-    length = share * beam.norm();
-    return device + share * beam;
+    const T fraction = -device[2] / beam[2];
+    length = fraction * beam.norm();
+    return device + fraction * beam;
 }
 
 }  // namespace calib

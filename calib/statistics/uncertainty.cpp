@@ -20,9 +20,9 @@ std::string describe(const Eigen::VectorXd& direction, const std::vector<std::st
     });
     std::string text;
     for (const Eigen::Index i : order) {
-        const double share = direction[i] * (direction[order[0]] < 0.0 ? -1.0 : 1.0);
-        if (std::abs(share) < 0.3) break;
-        if (!text.empty()) text += share < 0.0 ? " against " : " with ";
+        const double component = direction[i] * (direction[order[0]] < 0.0 ? -1.0 : 1.0);
+        if (std::abs(component) < 0.3) break;
+        if (!text.empty()) text += component < 0.0 ? " against " : " with ";
         text += names[static_cast<std::size_t>(i)];
     }
     return text;

@@ -94,17 +94,19 @@ void Background::follow(std::span<const double> counts,
                         std::span<const double> signal) {
     frames_seen_ = std::min(frames_seen_ + 1.0, static_cast<double>(settings_.memory_frames));
     const double gain = 1.0 / frames_seen_;
-    const auto share = [&](std::size_t i) { return counts[i] * mean_[i] / (mean_[i] + signal[i]); };
+    const auto explained = [&](std::size_t i) {
+        return counts[i] * mean_[i] / (mean_[i] + signal[i]);
+    };
     for (std::size_t begin = 0; begin < mean_.size(); begin += num_bins_) {
         double sum = 0.0;
         double count = 0.0;
         for (std::size_t i = begin; i < begin + num_bins_; ++i) {
             if (weights[i] == 0.0) continue;
             if (!is_flat()) {
-                mean_[i] += gain * (share(i) - mean_[i]);
+                mean_[i] += gain * (explained(i) - mean_[i]);
                 mean_[i] = std::max(mean_[i], kPriorCounts / settings_.memory_frames);
             }
-            sum += share(i);
+            sum += explained(i);
             count += 1.0;
         }
         if (!is_flat() || count == 0.0) continue;

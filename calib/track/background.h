@@ -12,7 +12,7 @@ namespace calib {
 /// What a sensor counts without targets, learnt from its frames; [zone][bin].
 ///
 /// First from a number of frames, without those that stand out in a bin; then every frame adds the
-/// share of its counts that the targets do not explain (a step of expectation maximisation), so
+/// fraction of its counts that the targets do not explain (a step of expectation maximisation), so
 /// that the background follows slow changes while targets are there.
 class Background {
  public:

@@ -24,7 +24,7 @@ double tolerance_s(const std::vector<TrackedFrame>& frames) {
                              : 0.5 * core::upper_median(intervals);
 }
 
-std::optional<double> share(std::size_t part, std::size_t all) {
+std::optional<double> fraction(std::size_t part, std::size_t all) {
     if (all == 0) return std::nullopt;
     return static_cast<double>(part) / static_cast<double>(all);
 }
@@ -97,9 +97,9 @@ TrackScores TrackScorer::scores() const {
         scores.rmse_m = std::sqrt(squares / static_cast<double>(distances_m_.size()));
         scores.median_m = core::upper_median(distances_m_);
     }
-    scores.coverage = share(covered_, with_covariance_);
-    scores.false_alarms = share(alarmed_, frames_);
-    scores.missed = share(there_ - distances_m_.size(), there_);
+    scores.coverage = fraction(covered_, with_covariance_);
+    scores.false_alarms = fraction(alarmed_, frames_);
+    scores.missed = fraction(there_ - distances_m_.size(), there_);
     if (!latencies_s_.empty()) {
         double sum = 0.0;
         for (const double l : latencies_s_) sum += l;

@@ -11,12 +11,13 @@ namespace calib {
 
 /// How good a track is; empty where nothing was there to be scored.
 struct TrackScores {
-    std::optional<double> rmse_m;        ///< of positions of true targets that were named
-    std::optional<double> median_m;      ///< of the same distances
-    std::optional<double> coverage;      ///< share of true positions in the stated 95 % ellipsoids
-    std::optional<double> latency_s;     ///< mean time from a target's appearance to its naming
-    std::optional<double> false_alarms;  ///< share of frames that name more targets than there are
-    std::optional<double> missed;        ///< share of true targets that were not named
+    std::optional<double> rmse_m;    ///< of positions of true targets that were named
+    std::optional<double> median_m;  ///< of the same distances
+    std::optional<double> coverage;  ///< fraction of true positions in the reported 95 % ellipsoids
+    std::optional<double> latency_s;  ///< mean time from a target's appearance to its naming
+    std::optional<double>
+        false_alarms;              ///< fraction of frames that name more targets than there are
+    std::optional<double> missed;  ///< fraction of true targets that were not named
 };
 
 /// Adds up scores over tracks.

@@ -29,7 +29,7 @@ std::optional<std::string> reversed_time_warning(const TrackSettings& settings,
                                                  const std::vector<FrameEstimate>& estimates) {
     constexpr std::size_t kMostTried = 100;  // beside those that teach the background
     constexpr double kNotable = 30.0;        // of the logarithm of the likelihood
-    constexpr double kNotableShare = 0.1;
+    constexpr double kNotableFraction = 0.1;
     const std::size_t count =
         std::min(frames.size(), kMostTried + static_cast<std::size_t>(settings.background.frames));
     Tracker tracker(settings, sensor);
@@ -46,7 +46,7 @@ std::optional<std::string> reversed_time_warning(const TrackSettings& settings,
         forward += estimates[f].log_likelihood;
         backward += tracker.step(reversed(frames[f], sensor.axis.num_bins)).log_likelihood;
     }
-    if (backward <= forward + kNotable + kNotableShare * std::abs(forward)) return std::nullopt;
+    if (backward <= forward + kNotable + kNotableFraction * std::abs(forward)) return std::nullopt;
     return fmt::format(
         "time looks reversed: with their bins in reverse, targets explain {} frames "
         "better (log likelihood {:.0f} instead of {:.0f}); capture.flip_t=true "

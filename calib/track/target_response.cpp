@@ -34,8 +34,8 @@ PulseTable::PulseTable(double sigma_m, double width_m)
     };
     for (std::size_t i = 0; i < steps; ++i) {
         const double u = static_cast<double>(i) / per_m_ - reach_m_;
-        share_.push_back(core::gaussian_cdf(u + 0.5 * width_m, sigma_m) -
-                         core::gaussian_cdf(u - 0.5 * width_m, sigma_m));
+        fraction_.push_back(core::gaussian_cdf(u + 0.5 * width_m, sigma_m) -
+                            core::gaussian_cdf(u - 0.5 * width_m, sigma_m));
         slope_.push_back(density(u + 0.5 * width_m) - density(u - 0.5 * width_m));
     }
 }
@@ -45,7 +45,7 @@ struct TargetResponse::LitPulse {
     double start_m = 0.0;
     double per_m = 0.0;
     double end_m = 0.0;
-    std::vector<double> share;
+    std::vector<double> fraction;
     std::vector<double> slope;
     std::vector<Vec3> gradient;
 };
@@ -62,24 +62,24 @@ TargetResponse::TargetResponse(const core::SensorFootprints& footprints,
       crosstalk_(crosstalk),
       pulse_(response_sigma_m(sigma_m, target.radius_m, axis.bin_width_m), axis.bin_width_m),
       sigma_m_(response_sigma_m(sigma_m, target.radius_m, axis.bin_width_m)) {
-    const double with_legs = opl_origin == core::OplOrigin::Device ? 1.0 : 0.0;
-    const auto legs = [&](const core::PatchPoints& points) {
-        std::vector<Leg> list;
+    const double with_segments = opl_origin == core::OplOrigin::Device ? 1.0 : 0.0;
+    const auto segments = [&](const core::PatchPoints& points) {
+        std::vector<Segment> list;
         for (std::size_t i = 0; i < points.size(); ++i) {
             list.push_back(
-                {points.positions[i], points.weights[i], with_legs * points.device_m[i]});
+                {points.positions[i], points.weights[i], with_segments * points.device_m[i]});
         }
         return list;
     };
     for (const core::ZoneFootprint& footprint : footprints.zones) {
         Zone zone;
-        zone.seen = legs(footprint.seen);
-        const std::vector<Leg> lit = legs(footprint.lit);
+        zone.seen = segments(footprint.seen);
+        const std::vector<Segment> lit = segments(footprint.lit);
         if (target.returns_light()) {
             for (std::size_t i = 0; i < zone.seen.size(); ++i) {
-                Leg point = zone.seen[i];
+                Segment point = zone.seen[i];
                 point.weight *= footprint.seen_irradiance[i];
-                point.device_m += with_legs * (point.position_m - footprints.laser_m).norm();
+                point.device_m += with_segments * (point.position_m - footprints.laser_m).norm();
                 zone.there_and_back.push_back(point);
             }
             zone.seen.clear();
@@ -92,27 +92,27 @@ TargetResponse::TargetResponse(const core::SensorFootprints& footprints,
     }
 }
 
-TargetResponse::Reach TargetResponse::reach(const Leg& leg,
+TargetResponse::Reach TargetResponse::reach(const Segment& segment,
                                             const Vec3& position_m,
-                                            double legs) const {
-    const Vec3 d = position_m - leg.position_m;
+                                            double segments) const {
+    const Vec3 d = position_m - segment.position_m;
     const double r = d.norm();
     const double height = normal_.dot(d);
-    if (height <= 0.0) return {leg.device_m + legs * r, 0.0, Vec3::Zero(), Vec3::Zero()};
-    const double per_r3 = leg.weight / (r * r * r);
-    return {leg.device_m + legs * r,
+    if (height <= 0.0) return {segment.device_m + segments * r, 0.0, Vec3::Zero(), Vec3::Zero()};
+    const double per_r3 = segment.weight / (r * r * r);
+    return {segment.device_m + segments * r,
             height * per_r3,
-            (legs / r) * d,
+            (segments / r) * d,
             per_r3 * (normal_ - (3.0 * height / (r * r)) * d)};
 }
 
-TargetResponse::Reaches TargetResponse::reaches(const std::vector<Leg>& legs,
+TargetResponse::Reaches TargetResponse::reaches(const std::vector<Segment>& segments,
                                                 const Vec3& position_m,
                                                 double ways) const {
     Reaches result;
-    result.all.reserve(legs.size());
-    for (const Leg& leg : legs) {
-        const Reach& one = result.all.emplace_back(reach(leg, position_m, ways));
+    result.all.reserve(segments.size());
+    for (const Segment& segment : segments) {
+        const Reach& one = result.all.emplace_back(reach(segment, position_m, ways));
         result.first_m = std::min(result.first_m, one.opl_m);
         result.last_m = std::max(result.last_m, one.opl_m);
     }
@@ -146,8 +146,8 @@ TargetResponse::Window TargetResponse::add_retroreflective(const Zone& zone,
         Vec3 slope = Vec3::Zero();
         for (const Reach& r : ways.all) {
             const PulseTable::Value pulse = pulse_.at(center_m - r.opl_m);
-            value += r.weight * pulse.share;
-            slope += pulse.share * r.weight_gradient - (r.weight * pulse.slope) * r.opl_gradient;
+            value += r.weight * pulse.fraction;
+            slope += pulse.fraction * r.weight_gradient - (r.weight * pulse.slope) * r.opl_gradient;
         }
         values[bin] = value;
         if (!gradient.empty()) gradient[bin] = slope;
@@ -155,7 +155,7 @@ TargetResponse::Window TargetResponse::add_retroreflective(const Zone& zone,
     return window;
 }
 
-TargetResponse::LitPulse TargetResponse::lit_pulse(const std::vector<Leg>& lit,
+TargetResponse::LitPulse TargetResponse::lit_pulse(const std::vector<Segment>& lit,
                                                    const Vec3& position_m) const {
     LitPulse result;
     const Reaches ways = reaches(lit, position_m, 1.0);
@@ -165,7 +165,7 @@ TargetResponse::LitPulse TargetResponse::lit_pulse(const std::vector<Leg>& lit,
     const double length_m = ways.last_m - ways.first_m + 2.0 * pulse_.reach_m();
     const auto steps = static_cast<std::size_t>(std::ceil(length_m * result.per_m)) + 2;
     result.end_m = result.start_m + static_cast<double>(steps - 1) / result.per_m;
-    result.share.assign(steps, 0.0);
+    result.fraction.assign(steps, 0.0);
     result.slope.assign(steps, 0.0);
     result.gradient.assign(steps, Vec3::Zero());
     for (const Reach& r : ways.all) {
@@ -175,10 +175,10 @@ TargetResponse::LitPulse TargetResponse::lit_pulse(const std::vector<Leg>& lit,
         for (auto i = static_cast<std::size_t>(std::max(0.0, std::ceil(from))); i <= last; ++i) {
             const double at_m = result.start_m + static_cast<double>(i) / result.per_m;
             const PulseTable::Value pulse = pulse_.at(at_m - r.opl_m);
-            result.share[i] += r.weight * pulse.share;
+            result.fraction[i] += r.weight * pulse.fraction;
             result.slope[i] += r.weight * pulse.slope;
             result.gradient[i] +=
-                pulse.share * r.weight_gradient - (r.weight * pulse.slope) * r.opl_gradient;
+                pulse.fraction * r.weight_gradient - (r.weight * pulse.slope) * r.opl_gradient;
         }
     }
     return result;
@@ -189,7 +189,7 @@ TargetResponse::Window TargetResponse::add_diffuse(const Zone& zone,
                                                    const Vec3& position_m,
                                                    std::span<double> values,
                                                    std::span<Vec3> gradient) const {
-    if (lit.share.empty() || zone.seen.empty()) return {};
+    if (lit.fraction.empty() || zone.seen.empty()) return {};
     const Reaches ways = reaches(zone.seen, position_m, 1.0);
     const Window window = bins_around(lit.start_m + ways.first_m, lit.end_m + ways.last_m, 0.0);
     for (int i = window.begin; i < window.end; ++i) {
@@ -197,17 +197,17 @@ TargetResponse::Window TargetResponse::add_diffuse(const Zone& zone,
         Vec3 slope = Vec3::Zero();
         for (const Reach& r : ways.all) {
             const double position = (axis_.bin_center_m(i) - r.opl_m - lit.start_m) * lit.per_m;
-            if (!(position >= 0.0) || position >= static_cast<double>(lit.share.size() - 1))
+            if (!(position >= 0.0) || position >= static_cast<double>(lit.fraction.size() - 1))
                 continue;
             const auto j = static_cast<std::size_t>(position);
             const double f = position - static_cast<double>(j);
             const auto between = [&](const auto& a, const auto& b) {
                 return (1.0 - f) * a + f * b;
             };
-            const double share = between(lit.share[j], lit.share[j + 1]);
-            value += r.weight * share;
+            const double fraction = between(lit.fraction[j], lit.fraction[j + 1]);
+            value += r.weight * fraction;
             if (gradient.empty()) continue;
-            slope += share * r.weight_gradient +
+            slope += fraction * r.weight_gradient +
                      r.weight * between(lit.gradient[j], lit.gradient[j + 1]) -
                      (r.weight * between(lit.slope[j], lit.slope[j + 1])) * r.opl_gradient;
         }
@@ -236,7 +236,7 @@ std::vector<TargetResponse::Window> TargetResponse::evaluate(const Vec3& positio
             windows.push_back(add_diffuse(zones_[z], lit, position_m, part, slope));
         }
     }
-    if (crosstalk_.share > 0.0) mix_zones(windows, values, gradient);
+    if (crosstalk_.fraction > 0.0) mix_zones(windows, values, gradient);
     return windows;
 }
 
@@ -272,7 +272,7 @@ void TargetResponse::mix_zones(std::vector<Window>& windows,
                     const auto exchange = [&](int c, int r) {
                         if (c < 0 || r < 0 || c >= crosstalk_.columns || r >= crosstalk_.rows)
                             return;
-                        sum += crosstalk_.share * (before[zone_at(c, r) * size + b] - own);
+                        sum += crosstalk_.fraction * (before[zone_at(c, r) * size + b] - own);
                     };
                     exchange(column - 1, row);
                     exchange(column + 1, row);

@@ -36,7 +36,7 @@ TargetSearch::TargetSearch(const TargetResponse& response, const SearchBox& box,
         }
     });
     for (const Cell& cell : cells) append(cell);
-    first_piece_.push_back(static_cast<std::uint32_t>(pieces_.size()));
+    first_run_.push_back(static_cast<std::uint32_t>(runs_.size()));
 }
 
 void TargetSearch::lay_grid(const SearchBox& box, double cell_m) {
@@ -64,19 +64,19 @@ void TargetSearch::Cell::add(std::span<const double> zone,
                              std::size_t first,
                              const TargetResponse::Window& window) {
     if (window.begin >= window.end) return;
-    pieces.push_back({static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(window.begin),
-                      static_cast<std::uint32_t>(window.end - window.begin),
-                      static_cast<std::uint32_t>(values.size())});
+    runs.push_back({static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(window.begin),
+                    static_cast<std::uint32_t>(window.end - window.begin),
+                    static_cast<std::uint32_t>(values.size())});
     for (int b = window.begin; b < window.end; ++b) {
         values.push_back(static_cast<float>(zone[static_cast<std::size_t>(b)]));
     }
 }
 
 void TargetSearch::append(const Cell& cell) {
-    first_piece_.push_back(static_cast<std::uint32_t>(pieces_.size()));
-    for (Piece piece : cell.pieces) {
-        piece.at += static_cast<std::uint32_t>(values_.size());
-        pieces_.push_back(piece);
+    first_run_.push_back(static_cast<std::uint32_t>(runs_.size()));
+    for (Run run : cell.runs) {
+        run.at += static_cast<std::uint32_t>(values_.size());
+        runs_.push_back(run);
     }
     values_.insert(values_.end(), cell.values.begin(), cell.values.end());
 }
@@ -102,12 +102,12 @@ std::vector<TargetSearch::Score> TargetSearch::score(const FrameCounts& frame) c
     for (std::size_t c = 0; c < positions_.size(); ++c) {
         float slope = 0.0F;
         float curvature = 0.0F;
-        for (std::uint32_t p = first_piece_[c]; p < first_piece_[c + 1]; ++p) {
-            const Piece& piece = pieces_[p];
-            const float* s = values_.data() + piece.at;
-            const float* r = pull.data() + piece.first;
-            const float* w = precision.data() + piece.first;
-            for (std::uint32_t i = 0; i < piece.size; ++i) {
+        for (std::uint32_t p = first_run_[c]; p < first_run_[c + 1]; ++p) {
+            const Run& run = runs_[p];
+            const float* s = values_.data() + run.at;
+            const float* r = pull.data() + run.first;
+            const float* w = precision.data() + run.first;
+            for (std::uint32_t i = 0; i < run.size; ++i) {
                 slope += s[i] * r[i];
                 curvature += s[i] * s[i] * w[i];
             }

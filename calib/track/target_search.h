@@ -41,14 +41,14 @@ class TargetSearch {
                                 const core::Vec3& offset_m) const;
 
  private:
-    struct Piece {
+    struct Run {
         std::uint32_t first = 0;  ///< index of the first bin in [zone][bin]
         std::uint32_t size = 0;
         std::uint32_t at = 0;  ///< in values_
     };
     /// A histogram of one cell: the bins that are not 0.
     struct Cell {
-        std::vector<Piece> pieces;
+        std::vector<Run> runs;
         std::vector<float> values;
 
         void add(std::span<const double> zone,
@@ -67,8 +67,8 @@ class TargetSearch {
 
     std::array<int, 3> cells_{};
     std::vector<core::Vec3> positions_;
-    std::vector<std::uint32_t> first_piece_;  ///< of each cell; one more at the end
-    std::vector<Piece> pieces_;
+    std::vector<std::uint32_t> first_run_;  ///< of each cell; one more at the end
+    std::vector<Run> runs_;
     std::vector<float> values_;
 };
 

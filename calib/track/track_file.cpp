@@ -22,8 +22,8 @@ Json matrix_json(const core::Mat3& m) {
 Json target_json(const TargetEstimate& target, const TrackSettings& settings) {
     Json json;
     json["id"] = target.id;
-    json["position_m"] = core::write_value(stated_position_m(target, settings));
-    json["covariance_m2"] = matrix_json(stated_covariance_m2(target, settings));
+    json["position_m"] = core::write_value(reported_position_m(target, settings));
+    json["covariance_m2"] = matrix_json(reported_covariance_m2(target, settings));
     json["probability"] = target.probability;
     json["strength"] = target.state.strength();
     if (target.state.mean.size() > kSeen) {
@@ -62,13 +62,13 @@ TrackedPosition read_target(const Json& json, const std::string& where) {
 
 }  // namespace
 
-Vec3 stated_position_m(const TargetEstimate& target, const TrackSettings& settings) {
+Vec3 reported_position_m(const TargetEstimate& target, const TrackSettings& settings) {
     const Vec3 position_m = target.state.position_m();
     if (!settings.moves_sensor()) return position_m;
     return settings.pose.whole().position_m + (*settings.target.position_m - position_m);
 }
 
-core::Mat3 stated_covariance_m2(const TargetEstimate& target, const TrackSettings& settings) {
+core::Mat3 reported_covariance_m2(const TargetEstimate& target, const TrackSettings& settings) {
     // The variance of a ball's points along an axis is a fifth of its squared radius.
     const double variance_m2 =
         std::pow(settings.noise.systematic_m, 2) + std::pow(settings.target.radius_m, 2) / 5.0;
@@ -116,8 +116,8 @@ std::string track_csv(const std::vector<FrameEstimate>& frames, const TrackSetti
     for (const FrameEstimate& frame : frames) {
         for (const TargetEstimate& target : frame.targets) {
             if (!target.is_named) continue;
-            const Vec3 p = stated_position_m(target, settings);
-            const core::Mat3 c = stated_covariance_m2(target, settings);
+            const Vec3 p = reported_position_m(target, settings);
+            const core::Mat3 c = reported_covariance_m2(target, settings);
             text += fmt::format("{:.9g},{},{:.6g},{:.6g},{:.6g},{:.6g},",
                                 frame.time_s,
                                 target.id,

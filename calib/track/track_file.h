@@ -25,11 +25,11 @@ struct TrackedFrame {
 
 /// Where a target is. Where the sensor's pose is free, where the sensor is: where it stood at
 /// settings.pose plus what the target seemed to move the other way.
-core::Vec3 stated_position_m(const TargetEstimate& target, const TrackSettings& settings);
+core::Vec3 reported_position_m(const TargetEstimate& target, const TrackSettings& settings);
 
 /// The covariance of a target's position: what counting leaves open, settings.noise.systematic_m
 /// of the model, and which part of a body the light comes from.
-core::Mat3 stated_covariance_m2(const TargetEstimate& target, const TrackSettings& settings);
+core::Mat3 reported_covariance_m2(const TargetEstimate& target, const TrackSettings& settings);
 
 /// What is believed after a frame, as TRACK.json holds it and as live answers say it.
 core::Json frame_json(const FrameEstimate& frame, const TrackSettings& settings);

@@ -87,7 +87,7 @@ core::SensorFootprints footprints_of_spots(const std::vector<Vec3>& spots_m,
         const double area_m2 = u.cross(v).norm();
         core::ZoneFootprint zone;
         zone.center_m = world_from_wall * spots[s];
-        constexpr double kShare = 1.0 / (kSpotPoints * kSpotPoints);
+        constexpr double kFraction = 1.0 / (kSpotPoints * kSpotPoints);
         for (int i = 0; i < kSpotPoints; ++i) {
             for (int j = 0; j < kSpotPoints; ++j) {
                 const double a = (i + 0.5) / kSpotPoints - 0.5;
@@ -95,7 +95,7 @@ core::SensorFootprints footprints_of_spots(const std::vector<Vec3>& spots_m,
                 const Vec3 p = world_from_wall * Vec3(spots[s] + a * u + b * v);
                 for (core::PatchPoints* points : {&zone.lit, &zone.seen}) {
                     points->positions.push_back(p);
-                    points->weights.push_back(kShare);
+                    points->weights.push_back(kFraction);
                     points->device_m.push_back((p - device_m).norm());
                 }
                 zone.seen_irradiance.push_back(area_m2 > 0.0 ? 1.0 / area_m2 : 1.0);

@@ -69,14 +69,14 @@ struct SearchSettings {
     double cell_m = 0.12;
 };
 
-/// Where a sensor is and looks, as far as it is stated.
+/// Where a sensor is and looks, as far as it is given.
 struct PoseSettings {
     std::optional<core::Vec3> position_m;
     std::optional<core::Vec3> forward;
     std::optional<core::Vec3> up;
 
-    bool is_stated() const { return position_m || forward || up; }
-    /// Takes from another pose what is not stated.
+    bool is_given() const { return position_m || forward || up; }
+    /// Takes from another pose what is not reported.
     void complete(const core::SensorPose& other);
     /// The pose, completed by one that looks at the wall z = 0 from a metre before its centre.
     core::SensorPose whole() const;
@@ -166,7 +166,7 @@ void for_each_field(NoiseSettings& s, Visitor&& visit) {
           s.systematic_m,
           core::at_least(0,
                          "error along each axis that no number of frames averages away, beside "
-                         "those of counting in stated covariances [m]"));
+                         "those of counting in reported covariances [m]"));
 }
 
 template <class Visitor>

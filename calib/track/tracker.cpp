@@ -160,8 +160,8 @@ double Tracker::dispersion_of(const TrackFrame& frame, const std::vector<double>
     return dispersion_;
 }
 
-// A bin may be off by a share of what it holds beyond the background; the same for all targets that
-// may explain it, so that these can be compared.
+// A bin may be off by a fraction of what it holds beyond the background; the same for all targets
+// that may explain it, so that these can be compared.
 void Tracker::add_model_error(const std::vector<double>& counts,
                               std::vector<double>& weights) const {
     const std::vector<double>& background = background_.mean();

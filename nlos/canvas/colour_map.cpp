@@ -68,8 +68,8 @@ const std::array<Colour, 256>& colours_of(ColourMap map) {
     return tables[static_cast<std::size_t>(map)];
 }
 
-Colour colour_at(ColourMap map, double share) {
-    const double level = share > 0.0 ? std::min(share, 1.0) * 255.0 : 0.0;  // NaN is dark
+Colour colour_at(ColourMap map, double fraction) {
+    const double level = fraction > 0.0 ? std::min(fraction, 1.0) * 255.0 : 0.0;  // NaN is dark
     return colours_of(map)[static_cast<std::size_t>(std::lround(level))];
 }
 

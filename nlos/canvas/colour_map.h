@@ -13,16 +13,16 @@ struct Colour {
     std::uint8_t blue = 0;
 };
 
-/// How values become colours: Inferno for amounts of light, Viridis for depths, Cividis for shares,
-/// Diverging for signed differences (white in the middle), Grey for photographs. All but the
-/// diverging one grow evenly lighter, so that they survive colour blindness and print.
+/// How values become colours: Inferno for amounts of light, Viridis for depths, Cividis for
+/// fractions, Diverging for signed differences (white in the middle), Grey for photographs. All but
+/// the diverging one grow evenly lighter, so that they survive colour blindness and print.
 enum class ColourMap { Inferno, Viridis, Cividis, Diverging, Grey };
 
 /// The map's 256 colours, from the lowest to the highest value.
 const std::array<Colour, 256>& colours_of(ColourMap map);
 
-/// The colour at `share` of the value range; shares outside [0, 1] are clamped.
-Colour colour_at(ColourMap map, double share);
+/// The colour at `fraction` of the value range; fractions outside [0, 1] are clamped.
+Colour colour_at(ColourMap map, double fraction);
 
 /// The colours of lines and results that are told apart by them, again from the first after the
 /// last; colour-blind readers see them apart too.

@@ -9,35 +9,35 @@ namespace nlos {
 namespace {
 
 /// What a cell of the new axis takes from consecutive cells of the old one; weights sum to 1.
-struct Shares {
+struct CellWeights {
     int first = 0;
     std::vector<double> weights;
 
-    bool operator==(const Shares&) const = default;
+    bool operator==(const CellWeights&) const = default;
 };
 
-std::vector<Shares> axis_shares(int from, int to) {
-    std::vector<Shares> result(static_cast<std::size_t>(to));
+std::vector<CellWeights> axis_weights(int from, int to) {
+    std::vector<CellWeights> result(static_cast<std::size_t>(to));
     const double step = static_cast<double>(from) / to;
     for (int i = 0; i < to; ++i) {
-        Shares& shares = result[static_cast<std::size_t>(i)];
+        CellWeights& cells = result[static_cast<std::size_t>(i)];
         if (from <= to) {
-            shares = {std::min(from - 1, static_cast<int>((i + 0.5) * step)), {1.0}};
+            cells = {std::min(from - 1, static_cast<int>((i + 0.5) * step)), {1.0}};
             continue;
         }
         const double begin = i * step;
         const double end = (i + 1) * step;
-        shares.first = static_cast<int>(begin);
-        for (int cell = shares.first; cell < std::min(from, static_cast<int>(std::ceil(end)));
+        cells.first = static_cast<int>(begin);
+        for (int cell = cells.first; cell < std::min(from, static_cast<int>(std::ceil(end)));
              ++cell) {
             const double overlap = std::min(end, cell + 1.0) - std::max(begin, double(cell));
-            shares.weights.push_back(overlap / step);
+            cells.weights.push_back(overlap / step);
         }
     }
     return result;
 }
 
-Colour mean_colour(const Raster& raster, const Shares& across, const Shares& down) {
+Colour mean_colour(const Raster& raster, const CellWeights& across, const CellWeights& down) {
     double red = 0.5;  // for rounding
     double green = 0.5;
     double blue = 0.5;
@@ -62,8 +62,8 @@ Colour mean_colour(const Raster& raster, const Shares& across, const Shares& dow
 Raster resized(const Raster& raster, int columns, int rows) {
     assert(raster.colours.size() ==
            static_cast<std::size_t>(raster.columns) * static_cast<std::size_t>(raster.rows));
-    const std::vector<Shares> across = axis_shares(raster.columns, columns);
-    const std::vector<Shares> down = axis_shares(raster.rows, rows);
+    const std::vector<CellWeights> across = axis_weights(raster.columns, columns);
+    const std::vector<CellWeights> down = axis_weights(raster.rows, rows);
     Raster result{columns, rows, std::vector<Colour>(across.size() * down.size())};
     auto next = result.colours.begin();
     for (std::size_t y = 0; y < down.size(); ++y) {
@@ -71,7 +71,7 @@ Raster resized(const Raster& raster, int columns, int rows) {
             next = std::copy(next - columns, next, next);
             continue;
         }
-        for (const Shares& column : across) *next++ = mean_colour(raster, column, down[y]);
+        for (const CellWeights& column : across) *next++ = mean_colour(raster, column, down[y]);
     }
     return result;
 }

@@ -14,7 +14,7 @@
 namespace nlos {
 namespace {
 
-constexpr double kMaskShare = 0.2;
+constexpr double kMaskFraction = 0.2;
 
 /// The neighbour distance of evenly spaced voxel centres; 0 for a single one.
 double pitch_m(const std::vector<double>& centres_m) {
@@ -72,13 +72,13 @@ void score_masks(const std::vector<float>& projection,
                  const core::DepthMap& depth,
                  const Mask& truth,
                  Metrics& metrics) {
-    metrics.mask_iou = mask_iou(mask_above_share(projection, kMaskShare), truth);
+    metrics.mask_iou = mask_iou(mask_above_fraction(projection, kMaskFraction), truth);
     if (depth.depth_m.size() == truth.size()) {
         metrics.mask_iou_stated = mask_iou(foreground_of(depth), truth);
     }
     if (const auto best = best_mask(projection, truth)) {
         metrics.mask_iou_best = best->iou;
-        metrics.mask_iou_best_threshold = best->share;
+        metrics.mask_iou_best_threshold = best->fraction;
     }
 }
 
@@ -86,7 +86,7 @@ double mean(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-double share_within(const std::vector<double>& distances_m, double threshold_m) {
+double fraction_within(const std::vector<double>& distances_m, double threshold_m) {
     const auto within = std::count_if(distances_m.begin(), distances_m.end(), [&](double distance) {
         return distance <= threshold_m;
     });
@@ -196,8 +196,8 @@ Metrics compare_points(const core::PointCloud& result,
         core::nearest_neighbours(truth.positions, result.positions);
     metrics.chamfer_m = 0.5 * (mean(to_truth.distances_m) + mean(to_result.distances_m));
 
-    const double accuracy = share_within(to_truth.distances_m, threshold_m);
-    const double completeness = share_within(to_result.distances_m, threshold_m);
+    const double accuracy = fraction_within(to_truth.distances_m, threshold_m);
+    const double completeness = fraction_within(to_result.distances_m, threshold_m);
     const double sum = accuracy + completeness;
     metrics.fscore = sum > 0.0 ? 2.0 * accuracy * completeness / sum : 0.0;
     metrics.completeness = completeness;
@@ -254,7 +254,7 @@ Metrics compare_volumes(const Reconstruction& result,
     check_same_wall(result.volume.axes.world_from_wall, axes.world_from_wall);
     const std::vector<float> projection = max_projection(result.volume);
     const std::vector<float> reference_projection = max_projection(reference.volume);
-    const Mask reference_mask = mask_above_share(reference_projection, kMaskShare);
+    const Mask reference_mask = mask_above_fraction(reference_projection, kMaskFraction);
 
     Metrics metrics = compare_points(
         result.points, reference.points, threshold_m.value_or(voxel_diagonal_m(axes)));

@@ -18,8 +18,8 @@ namespace nlos {
 /// Masks: the true one is the truth's foreground; the reconstructed one are the columns that
 /// `result.depth` gives a depth, and for mask_iou those whose maximum projection exceeds 20 % of
 /// its maximum. Depth and normal errors are taken where both masks have a value, and depth_coverage
-/// is the share of the true mask that this is. The true image is the albedo seen (1 when unknown),
-/// divided by its maximum; the surface samples are the truth's foreground columns.
+/// is the fraction of the true mask that this is. The true image is the albedo seen (1 when
+/// unknown), divided by its maximum; the surface samples are the truth's foreground columns.
 ///
 /// result       volume with depth and points; its normals, if any, point towards the wall
 /// truth        what the wall's orthographic view sees at exactly the volume's (x, y) columns

@@ -64,8 +64,8 @@ Image product(const Image& a, const Image& b) {
 
 }  // namespace
 
-Mask mask_above_share(const std::vector<float>& image, double share) {
-    const double threshold = share * static_cast<double>(std::max(largest(image), 0.0F));
+Mask mask_above_fraction(const std::vector<float>& image, double fraction) {
+    const double threshold = fraction * static_cast<double>(std::max(largest(image), 0.0F));
     Mask mask(image.size());
     for (std::size_t i = 0; i < image.size(); ++i) {
         mask[i] = static_cast<double>(image[i]) > threshold;

@@ -11,16 +11,16 @@ namespace nlos {
 /// One truth value per pixel, 0 or 1 (not vector<bool>: its elements have no address).
 using Mask = std::vector<unsigned char>;
 
-/// Pixels above `share` of the largest value; all 0 when no value is positive.
-Mask mask_above_share(const std::vector<float>& image, double share);
+/// Pixels above `fraction` of the largest value; all 0 when no value is positive.
+Mask mask_above_fraction(const std::vector<float>& image, double fraction);
 
 /// Intersection over union; empty when either mask is.
 std::optional<double> mask_iou(const Mask& a, const Mask& b);
 
 /// The mask of an image that a threshold cuts out.
 struct ThresholdedMask {
-    double iou = 0.0;    ///< intersection over union with the truth
-    double share = 0.0;  ///< the least value in the mask, of the image's largest
+    double iou = 0.0;       ///< intersection over union with the truth
+    double fraction = 0.0;  ///< the least value in the mask, of the image's largest
 };
 
 /// The largest intersection over union that any threshold on `image` reaches, found exactly.

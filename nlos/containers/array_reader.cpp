@@ -121,12 +121,12 @@ const ArrayNames& ArrayReader::listed() const {
 }
 
 const std::optional<ArrayDescription>& ArrayReader::describe(const std::string& name) const {
-    auto place = described_.find(name);
-    if (place == described_.end()) {
+    auto known = described_.find(name);
+    if (known == described_.end()) {
         const Json json = ask(Json::array({"describe", name}));
-        place = described_.emplace(name, description_from_json(json)).first;
+        known = described_.emplace(name, description_from_json(json)).first;
     }
-    return place->second;
+    return known->second;
 }
 
 const ArrayDescription& ArrayReader::describe_array(const std::string& name) const {

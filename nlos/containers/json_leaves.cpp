@@ -45,10 +45,10 @@ class Members {
  public:
     explicit Members(const Json& object) : members_(object.get_ref<const Json::object_t&>()) {}
 
-    /// The member `key`, or null when there is none; `place` is where it may be.
-    const Json* find(const std::string& key, std::size_t place) {
+    /// The member `key`, or null when there is none; `hint` is where it may be.
+    const Json* find(const std::string& key, std::size_t hint) {
         const auto guess =
-            members_.begin() + static_cast<std::ptrdiff_t>(std::min(place, members_.size()));
+            members_.begin() + static_cast<std::ptrdiff_t>(std::min(hint, members_.size()));
         if (guess != members_.end() && guess->first == key) return &guess->second;
         constexpr std::size_t kFew = 16;
         if (members_.size() <= kFew) {

@@ -67,13 +67,13 @@ Hdf5Handle open_referred(const Hdf5Handle& dataset, std::uint64_t index) {
     const Hdf5Handle space(H5Dget_space(dataset.id()), H5Sclose);
     const Shape shape = extents_of(space, "");
     if (index >= total_bytes(shape, 1)) return {};
-    std::vector<hsize_t> place(shape.size());
+    std::vector<hsize_t> coordinates(shape.size());
     std::uint64_t rest = index;
     for (std::size_t axis = shape.size(); axis-- > 0;) {
-        place[axis] = rest % shape[axis];
+        coordinates[axis] = rest % shape[axis];
         rest /= shape[axis];
     }
-    if (!place.empty()) H5Sselect_elements(space.id(), H5S_SELECT_SET, 1, place.data());
+    if (!coordinates.empty()) H5Sselect_elements(space.id(), H5S_SELECT_SET, 1, coordinates.data());
     const Hdf5Handle memory(H5Screate(H5S_SCALAR), H5Sclose);
     hobj_ref_t reference = 0;
     if (H5Dread(dataset.id(), H5T_STD_REF_OBJ, memory.id(), space.id(), H5P_DEFAULT, &reference) <

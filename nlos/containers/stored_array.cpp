@@ -12,18 +12,18 @@ std::string gather_rows(const StoredArray& array, std::size_t first, std::size_t
     const std::size_t row = values_per_row(array.shape);
     const std::size_t rank = array.shape.size();
     std::string rows(count * row * size, '\0');
-    std::vector<std::size_t> place(rank, 0);
+    std::vector<std::size_t> index(rank, 0);
     for (std::size_t i = 0; i < row; ++i) {
         std::size_t column = 0;  // of the stored array, whose columns are as long as the first axis
         for (std::size_t axis = rank; axis-- > 1;)
-            column = column * array.shape[axis] + place[axis];
+            column = column * array.shape[axis] + index[axis];
         const char* from = array.bytes.data() + (column * array.shape[0] + first) * size;
         for (std::size_t j = 0; j < count; ++j) {
             std::copy_n(from + j * size, size, rows.data() + (j * row + i) * size);
         }
         for (std::size_t axis = rank; axis-- > 1;) {
-            if (++place[axis] < array.shape[axis]) break;
-            place[axis] = 0;
+            if (++index[axis] < array.shape[axis]) break;
+            index[axis] = 0;
         }
     }
     return rows;

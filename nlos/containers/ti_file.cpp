@@ -100,7 +100,7 @@ class TiFile : public JsonLeaves {
         for (const char* name : names) counts[name] = take_count(name);
         const double begin = take_number("tmin", StoredNumber::Float32);
         const double end = take_number("tmax", StoredNumber::Float32);
-        // As the newer version states it.
+        // As the newer version gives it.
         add_values("tDelta",
                    {},
                    {(end - begin) / static_cast<double>(counts["numBins"])},

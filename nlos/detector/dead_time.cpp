@@ -160,10 +160,10 @@ std::vector<double> count_with_dead_time(std::span<const double> rates,
     for (auto before = pulse_begin - static_cast<std::ptrdiff_t>(train.blind_bins);
          before != pulse_begin;
          ++before) {
-        const double share = *before;
-        *before = left > 0.0 ? draw(undecided, share / left) : 0.0;
+        const double fraction = *before;
+        *before = left > 0.0 ? draw(undecided, fraction / left) : 0.0;
         undecided -= *before;
-        left -= share;
+        left -= fraction;
     }
     follow_pulse(probabilities, train, pulses, history, draw);
     return {pulse_begin, pulse_begin + bins};

@@ -192,7 +192,7 @@ void validate(const DetectorSettings& settings) {
 
 std::optional<std::string> coarse_bins_warning(const core::Capture& capture,
                                                const DetectorSettings& settings) {
-    if (!core::is_stated(settings.response)) return std::nullopt;
+    if (!core::is_given(settings.response)) return std::nullopt;
     const core::ResponseMoments response =
         core::moments(core::make_response(settings.response, "response"));
     const double width_m = capture.time_axis.bin_width_m;

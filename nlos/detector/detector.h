@@ -43,7 +43,7 @@ void for_each_field(RadiometrySettings& s, Visitor&& visit) {
           core::above(0, "area seen on the wall times solid angle of the lens [m^2 sr]"));
     visit("efficiency",
           s.efficiency,
-          core::Ranged{"detected share of the photons that reach the lens",
+          core::Ranged{"detected fraction of the photons that reach the lens",
                        {.low = 0.0, .high = 1.0, .with_high = true}});
 }
 

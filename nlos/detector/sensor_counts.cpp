@@ -12,7 +12,7 @@ namespace {
 
 void mix(const core::SensorModel& model, core::Transient& zones) {
     const core::Transient before = zones;
-    const auto share = static_cast<float>(model.detector.zone_crosstalk);
+    const auto fraction = static_cast<float>(model.detector.zone_crosstalk);
     const int columns = model.zones[0];
     const int rows = model.zones[1];
     const auto move = [&](int from, int to) {
@@ -20,8 +20,8 @@ void mix(const core::SensorModel& model, core::Transient& zones) {
         const auto loss = zones.histogram(static_cast<std::size_t>(from));
         const auto gain = zones.histogram(static_cast<std::size_t>(to));
         for (std::size_t bin = 0; bin < source.size(); ++bin) {
-            loss[bin] -= share * source[bin];
-            gain[bin] += share * source[bin];
+            loss[bin] -= fraction * source[bin];
+            gain[bin] += fraction * source[bin];
         }
     };
     for (int row = 0; row < rows; ++row) {

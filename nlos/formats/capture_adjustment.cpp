@@ -112,8 +112,9 @@ void reverse_time(Capture& capture) {
 
 void set_origin(core::OplOrigin origin, Capture& capture) {
     capture.scan.wall().opl_origin = origin;
-    capture.notes.push_back(fmt::format("path lengths {} the legs to laser and detector, as told",
-                                        origin == core::OplOrigin::Device ? "include" : "exclude"));
+    capture.notes.push_back(
+        fmt::format("path lengths {} the segments to laser and detector, as told",
+                    origin == core::OplOrigin::Device ? "include" : "exclude"));
 }
 
 void set_unit(core::TransientUnit unit, Capture& capture) {

@@ -99,7 +99,7 @@ void copy_rows(const core::Transient& transient,
                std::size_t count,
                float* rows) {
     for_each_row_value(
-        transient, first, count, [&](float value, std::size_t place) { rows[place] = value; });
+        transient, first, count, [&](float value, std::size_t index) { rows[index] = value; });
 }
 
 void copy_bins(const float* rows,
@@ -107,7 +107,7 @@ void copy_bins(const float* rows,
                std::size_t count,
                core::Transient& transient) {
     for_each_row_value(
-        transient, first, count, [&](float& value, std::size_t place) { value = rows[place]; });
+        transient, first, count, [&](float& value, std::size_t index) { value = rows[index]; });
 }
 
 void copy_stack(const std::vector<core::Transient>& stack,

@@ -140,7 +140,7 @@ std::vector<std::string> describe_capture(const core::Capture& capture) {
                     axis.opl_end_m()));
     if (scan.has_wall()) {
         lines.push_back(
-            fmt::format("path lengths {} the legs to laser and detector",
+            fmt::format("path lengths {} the segments to laser and detector",
                         scan.opl_origin() == core::OplOrigin::Device ? "include" : "exclude"));
     }
     if (capture.observed) lines.push_back(describe_observed(capture));

@@ -38,7 +38,7 @@ void check_scan(const std::string& path, const core::WallScan& scan) {
                           "must be points on the wall z = 0 that looks along z, with path lengths "
                           "from and to the wall");
     };
-    if (scan.opl_origin != core::OplOrigin::RelayWall) refuse("path lengths with device legs");
+    if (scan.opl_origin != core::OplOrigin::RelayWall) refuse("path lengths with device segments");
     for (const WallPoints* points : {&scan.illumination, &scan.sensing}) {
         for (std::size_t i = 0; i < points->size(); ++i) {
             if (std::abs(points->positions[i].z()) > kTolerance_m ||

@@ -69,7 +69,7 @@ bool shows_wall(const Capture& capture) {
 }
 
 /// Where in the table a pair's first bin stands: rows of bins, or the wall from its front.
-std::size_t place_of(std::size_t pair, const Capture& capture, bool is_wall) {
+std::size_t index_of(std::size_t pair, const Capture& capture, bool is_wall) {
     if (!is_wall) return pair * static_cast<std::size_t>(capture.time_axis.num_bins);
     const auto [nx, ny] = *capture.scan.wall().sensing.grid;
     return (ny - 1 - pair % ny) * nx + (nx - 1 - pair / ny);
@@ -82,7 +82,7 @@ std::vector<float> to_channel(const core::Transient& transient,
     for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
         std::ranges::copy(
             transient.histogram(pair),
-            channel.begin() + static_cast<std::ptrdiff_t>(place_of(pair, capture, is_wall)));
+            channel.begin() + static_cast<std::ptrdiff_t>(index_of(pair, capture, is_wall)));
     }
     return channel;
 }
@@ -92,7 +92,7 @@ core::Transient to_transient(const std::vector<float>& channel,
                              bool is_wall) {
     core::Transient transient(capture.scan.num_pairs(), capture.time_axis.num_bins);
     for (std::size_t pair = 0; pair < transient.num_pairs(); ++pair) {
-        std::copy_n(channel.begin() + static_cast<std::ptrdiff_t>(place_of(pair, capture, is_wall)),
+        std::copy_n(channel.begin() + static_cast<std::ptrdiff_t>(index_of(pair, capture, is_wall)),
                     transient.num_bins(),
                     transient.histogram(pair).begin());
     }

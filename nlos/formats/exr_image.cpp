@@ -45,8 +45,8 @@ void put_channels(const core::PinholeCamera& camera,
     for (std::size_t bin = 0; bin < transient.num_bins(); ++bin) {
         std::vector<float>& channel = table.channels[channel_name(kind, bin, transient.num_bins())];
         channel.resize(camera.num_pixels());
-        for_each_pixel(camera, [&](std::size_t pair, std::size_t place) {
-            channel[place] = transient.histogram(pair)[bin];
+        for_each_pixel(camera, [&](std::size_t pair, std::size_t index) {
+            channel[index] = transient.histogram(pair)[bin];
         });
     }
 }
@@ -60,8 +60,8 @@ core::Transient read_channels(const std::string& path,
     for (std::size_t bin = 0; bin < transient.num_bins(); ++bin) {
         const std::string name = channel_name(kind, bin, transient.num_bins());
         const auto& channel = ExrAttributes(path, table).channel(name);
-        for_each_pixel(camera, [&](std::size_t pair, std::size_t place) {
-            transient.histogram(pair)[bin] = channel[place];
+        for_each_pixel(camera, [&](std::size_t pair, std::size_t index) {
+            transient.histogram(pair)[bin] = channel[index];
         });
     }
     return transient;

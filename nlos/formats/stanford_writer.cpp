@@ -35,7 +35,7 @@ struct StanfordScan {
 };
 
 /// Throws core::Error that names `path` unless the scan is such a square, whose path lengths
-/// exclude the legs to the devices.
+/// exclude the segments to the devices.
 StanfordScan stanford_scan(const std::string& path, const core::WallScan& scan) {
     constexpr double kTolerance_m = 1e-6;  // other files hold single precision
     const auto refuse = [&](const std::string& found) {
@@ -47,7 +47,7 @@ StanfordScan stanford_scan(const std::string& path, const core::WallScan& scan) 
     if (scan.pattern != core::ScanPattern::Confocal) {
         refuse(fmt::format("a scan that is {}", enum_name(scan.pattern)));
     }
-    if (scan.opl_origin != core::OplOrigin::RelayWall) refuse("path lengths with device legs");
+    if (scan.opl_origin != core::OplOrigin::RelayWall) refuse("path lengths with device segments");
     if (!scan.sensing.grid || (*scan.sensing.grid)[0] != (*scan.sensing.grid)[1] ||
         (*scan.sensing.grid)[0] < 2) {
         refuse("points that are no square grid");

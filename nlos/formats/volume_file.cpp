@@ -89,7 +89,7 @@ core::DepthMap read_depth(const ArrayReader& file, const VolumeAxes& axes) {
     return depth;
 }
 
-/// What is stated of every column; nothing in files without.
+/// What is reported of every column; nothing in files without.
 std::vector<double> read_column_values(const ArrayReader& file,
                                        const std::string& name,
                                        const Shape& columns) {

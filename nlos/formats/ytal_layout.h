@@ -48,7 +48,7 @@ inline constexpr const char* kCameraKey = "camera";
 inline constexpr const char* kGateStep = "gate_step_m";
 inline constexpr const char* kFrameTime = "frame_s";
 
-/// Attributes of /nlos/velocity: its axis, and the carrier that Doppler shifts are stated for.
+/// Attributes of /nlos/velocity: its axis, and the carrier that Doppler shifts are given for.
 inline constexpr const char* kVelocityStart = "start_m_per_s";
 inline constexpr const char* kVelocityBinWidth = "bin_width_m_per_s";
 inline constexpr const char* kVelocityCarrier = "carrier_hz";

@@ -200,7 +200,7 @@ core::OplOrigin read_opl_origin(const ArrayReader& file, Capture& capture) {
         core::read_value(
             core::Json(file.read_text("opl_origin")), file.where("opl_origin"), origin);
     } else if (!file.has(flag)) {
-        capture.notes.push_back(flag + " is missing: device legs not included");
+        capture.notes.push_back(flag + " is missing: device segments not included");
     } else if (file.read_integer(flag) != 0) {
         origin = core::OplOrigin::Device;
     }

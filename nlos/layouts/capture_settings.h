@@ -62,7 +62,7 @@ void for_each_field(CaptureReadSettings& s, Visitor&& visit) {
                       "[m]"));
     visit("opl_origin",
           s.opl_origin,
-          "whether path lengths start and end at the wall, or include the legs to laser and "
+          "whether path lengths start and end at the wall, or include the segments to laser and "
           "detector (relay_wall|device); null: as the file says");
     visit("unit", s.unit, "what the histograms hold (radiance|counts); null: as the file says");
     visit("swap_xy", s.swap_xy, "exchange the grid's axes: histograms move, points stay");

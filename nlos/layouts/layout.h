@@ -22,8 +22,8 @@ namespace nlos {
 // same folder. Axes are counted as the program counts them that wrote the file: MATLAB files as in
 // MATLAB, all others slowest first.
 
-/// A number that a layout states, takes from an array, or asks for. In JSON a plain number is one
-/// that is stated.
+/// A number that a layout gives, takes from an array, or asks for. In JSON a plain number is one
+/// that is given.
 struct LayoutNumber {
     std::optional<double> value;
     std::string array;    ///< it is one of the array's values

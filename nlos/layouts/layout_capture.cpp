@@ -53,7 +53,7 @@ void read_devices(const LayoutFiles& files,
     if (included && !known) {
         throw Error(files.where(devices.laser + ", " + devices.detector),
                     "are missing",
-                    "must be there, for path lengths include the legs to the devices");
+                    "must be there, for path lengths include the segments to the devices");
     }
     scan.opl_origin = included ? core::OplOrigin::Device : core::OplOrigin::RelayWall;
 }
@@ -89,9 +89,10 @@ void describe(const LayoutFiles& files, const Layout& layout, Capture& capture) 
             capture.scene_info["arrays"][name] = files.read(name);
         }
     }
-    const auto number = [&](const LayoutNumber& stated, const char* what) {
-        const bool is_there = stated.value || (!stated.array.empty() && files.has(stated.array));
-        return is_there ? files.number(stated, what) : std::nullopt;
+    const auto number = [&](const LayoutNumber& described, const char* what) {
+        const bool is_there =
+            described.value || (!described.array.empty() && files.has(described.array));
+        return is_there ? files.number(described, what) : std::nullopt;
     };
     if (const auto fwhm_s = number(layout.response_fwhm_s, "response")) {
         capture.scene_info["detector"]["response"]["jitter_fwhm_ps"] = *fwhm_s * 1e12;

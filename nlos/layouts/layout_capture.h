@@ -31,7 +31,7 @@ LayoutSource sequence_source(const std::vector<std::string>& files, const Layout
 
 /// Reads a capture.
 ///
-/// returns   a capture whose notes say what the layout stated and assumed
+/// returns   a capture whose notes say what the layout given and assumed
 /// throws    core::Error naming file and array; a setting that the layout asks for and that is not
 ///           given is named with typical values
 core::Capture read_layout_capture(const LayoutSource& source, const CaptureReadSettings& settings);

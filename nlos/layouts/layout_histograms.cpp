@@ -53,7 +53,7 @@ class Walk {
  public:
     explicit Walk(std::vector<AxisStep> steps) : steps_(std::move(steps)), index_(steps_.size()) {}
 
-    const AxisStep& place() const { return place_; }
+    const AxisStep& position() const { return position_; }
 
     void advance() {
         for (std::size_t axis = 0; axis < steps_.size(); ++axis) {
@@ -71,16 +71,16 @@ class Walk {
 
  private:
     void move(const AxisStep& step, std::size_t count) {
-        place_.illumination += count * step.illumination;
-        place_.sensing += count * step.sensing;
-        place_.bin += count * step.bin;
-        place_.frame += count * step.frame;
-        place_.order += count * step.order;
+        position_.illumination += count * step.illumination;
+        position_.sensing += count * step.sensing;
+        position_.bin += count * step.bin;
+        position_.frame += count * step.frame;
+        position_.order += count * step.order;
     }
 
     std::vector<AxisStep> steps_;
     std::vector<std::size_t> index_;
-    AxisStep place_;
+    AxisStep position_;
 };
 
 }  // namespace
@@ -110,11 +110,12 @@ Histograms read_histograms(const LayoutFiles& files,
     Walk walk(steps_of(array, files.first_index_fastest(array.name)));
     files.read_runs(array.name, [&](const std::vector<float>& values) {
         for (const float value : values) {
-            const AxisStep& place = walk.place();
-            if (!frame || place.frame == static_cast<std::size_t>(*frame)) {
-                const std::size_t pair = numbers.pair(place.illumination, place.sensing);
-                read.frames[frame ? 0 : place.frame].histogram(pair)[place.bin] += value;
-                if (orders > 0) read.by_order[place.order].histogram(pair)[place.bin] += value;
+            const AxisStep& position = walk.position();
+            if (!frame || position.frame == static_cast<std::size_t>(*frame)) {
+                const std::size_t pair = numbers.pair(position.illumination, position.sensing);
+                read.frames[frame ? 0 : position.frame].histogram(pair)[position.bin] += value;
+                if (orders > 0)
+                    read.by_order[position.order].histogram(pair)[position.bin] += value;
             }
             walk.advance();
         }

@@ -80,7 +80,7 @@ PairNumbers read_pairs(const LayoutFiles& files,
                        const CaptureReadSettings& settings,
                        core::WallScan& scan);
 
-/// The axis of path lengths that a layout states for `count` bins.
+/// The axis of path lengths that a layout gives for `count` bins.
 core::TimeAxis read_axis(const LayoutFiles& files,
                          const LayoutBins& bins,
                          std::size_t count,

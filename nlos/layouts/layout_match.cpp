@@ -38,9 +38,9 @@ bool has_rank(const Shape& shape, const std::vector<int>& ranks) {
 
 /// Makes two axes of one whose extent is the product of two scalars; false when they do not fit.
 bool split_axis(const LayoutFiles& files, const LayoutSplit& split, HistogramArray& array) {
-    const auto place = std::find(array.axes.begin(), array.axes.end(), split.axis);
-    if (place == array.axes.end()) return false;
-    const auto axis = place - array.axes.begin();
+    const auto found = std::find(array.axes.begin(), array.axes.end(), split.axis);
+    if (found == array.axes.end()) return false;
+    const auto axis = found - array.axes.begin();
     Shape extents;
     for (const LayoutNumber& extent : split.extents) {
         if (!extent.value && !files.has(extent.array)) return false;
@@ -50,7 +50,7 @@ bool split_axis(const LayoutFiles& files, const LayoutSplit& split, HistogramArr
         extents.push_back(static_cast<std::size_t>(values[0]));
     }
     if (extents[0] * extents[1] != array.extents[static_cast<std::size_t>(axis)]) return false;
-    array.axes.erase(place);
+    array.axes.erase(found);
     array.axes.insert(array.axes.begin() + axis, split.into.begin(), split.into.end());
     array.extents.erase(array.extents.begin() + axis);
     array.extents.insert(array.extents.begin() + axis, extents.begin(), extents.end());
@@ -73,9 +73,9 @@ bool has_coordinates_first(const LayoutFiles& files, const LayoutPoints& points)
 }  // namespace
 
 std::optional<std::size_t> HistogramArray::extent(const std::string& axis) const {
-    const auto place = std::find(axes.begin(), axes.end(), axis);
-    if (place == axes.end()) return std::nullopt;
-    return extents[static_cast<std::size_t>(place - axes.begin())];
+    const auto found = std::find(axes.begin(), axes.end(), axis);
+    if (found == axes.end()) return std::nullopt;
+    return extents[static_cast<std::size_t>(found - axes.begin())];
 }
 
 std::optional<HistogramArray> find_histograms(const LayoutFiles& files, const Layout& layout) {

@@ -118,12 +118,12 @@ std::size_t offset_of(const CoordinateArray& array,
     const std::size_t x_axis = axes.names[0].back() == 'x' ? 0 : 1;
     if (array.shape.size() == 2) {  // a list that runs as the histograms' two axes do
         const std::size_t along = 1 - array.axis(kCoordinates);
-        const std::array<std::size_t, 2> place{index[x_axis == 0 ? 0 : 1],
-                                               index[x_axis == 0 ? 1 : 0]};
+        const std::array<std::size_t, 2> cell{index[x_axis == 0 ? 0 : 1],
+                                              index[x_axis == 0 ? 1 : 0]};
         const bool first_fastest =
             list_order.empty() ? axes.first_index_fastest : list_order.back() == axes.names[0];
-        const std::size_t number = first_fastest ? place[0] + axes.extents[0] * place[1]
-                                                 : place[0] * axes.extents[1] + place[1];
+        const std::size_t number = first_fastest ? cell[0] + axes.extents[0] * cell[1]
+                                                 : cell[0] * axes.extents[1] + cell[1];
         return number * array.strides[along];
     }
     return index[0] * array.strides[array.axis(axes.names[x_axis])] +
@@ -203,14 +203,14 @@ std::vector<Vec3> points_between(const LayoutFiles& files,
         corner[i] = Vec3(values.data());
     }
     const auto [columns, rows] = axes.grid_extents();
-    const auto share = [](std::size_t i, std::size_t count) {
+    const auto fraction = [](std::size_t i, std::size_t count) {
         return count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 0.0;
     };
     std::vector<Vec3> points;
     for (std::size_t x = 0; x < columns; ++x) {
         for (std::size_t y = 0; y < rows; ++y) {
-            points.push_back(corner[0] + share(x, columns) * (corner[1] - corner[0]) +
-                             share(y, rows) * (corner[2] - corner[0]));
+            points.push_back(corner[0] + fraction(x, columns) * (corner[1] - corner[0]) +
+                             fraction(y, rows) * (corner[2] - corner[0]));
         }
     }
     return points;

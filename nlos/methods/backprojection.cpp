@@ -12,15 +12,15 @@ bool takes_fast_way(const MethodInput& input) {
            common_lattice(*input.wall.grid, input.axes.y_m).has_value();
 }
 
-std::vector<double> device_legs(const core::WallScan& scan,
-                                const core::WallPoints& points,
-                                const core::Vec3& device) {
-    std::vector<double> legs(points.size(), 0.0);
-    if (scan.opl_origin == core::OplOrigin::RelayWall) return legs;
-    for (std::size_t i = 0; i < legs.size(); ++i) {
-        legs[i] = (points.positions[i] - device).norm();
+std::vector<double> device_segments(const core::WallScan& scan,
+                                    const core::WallPoints& points,
+                                    const core::Vec3& device) {
+    std::vector<double> segments(points.size(), 0.0);
+    if (scan.opl_origin == core::OplOrigin::RelayWall) return segments;
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        segments[i] = (points.positions[i] - device).norm();
     }
-    return legs;
+    return segments;
 }
 
 void run_fast(const MethodInput& input,
@@ -31,7 +31,7 @@ void run_fast(const MethodInput& input,
         *input.wall.grid, input.time_axis, input.transient.values(), {}, compensation};
     if (input.scan.opl_origin == core::OplOrigin::Device) {
         for (std::size_t pair = 0; pair < input.scan.num_pairs(); ++pair) {
-            data.device_legs_m.push_back(input.scan.device_legs_m(pair));
+            data.device_segments_m.push_back(input.scan.device_segments_m(pair));
         }
     }
     backproject_confocal_grid<float>(data, input.axes, values, input.progress, num_slabs);
@@ -44,8 +44,8 @@ void run_general(const MethodInput& input, Compensation compensation, std::span<
                                input.transient.values(),
                                in_wall_frame(input, scan.illumination),
                                in_wall_frame(input, scan.sensing),
-                               device_legs(scan, scan.illumination, scan.laser_position),
-                               device_legs(scan, scan.sensing, scan.detector_position),
+                               device_segments(scan, scan.illumination, scan.laser_position),
+                               device_segments(scan, scan.sensing, scan.detector_position),
                                compensation};
     backproject_pairs<float>(data, input.axes, values, input.progress);
 }
@@ -61,7 +61,7 @@ Volume backproject(const MethodInput& input,
             backproject(with_histograms(input, input.time_axis, input.transient, progress),
                         settings,
                         num_slabs);
-        divide_by_observed_share(input, num_slabs, volume);
+        divide_by_observed_fraction(input, num_slabs, volume);
         return volume;
     }
     Volume volume{input.axes, core::zeros(input.axes.num_voxels()), {}};
@@ -77,7 +77,7 @@ double backproject_bytes(const MethodInput& input,
                          const ReconstructSettings& /*settings*/,
                          std::size_t num_slabs) {
     const double volume =
-        4.0 * static_cast<double>(input.axes.num_voxels()) + observed_share_bytes(input);
+        4.0 * static_cast<double>(input.axes.num_voxels()) + observed_fraction_bytes(input);
     if (takes_fast_way(input)) {
         const auto bins = static_cast<double>(input.time_axis.num_bins);
         const WallGrid& grid = *input.wall.grid;

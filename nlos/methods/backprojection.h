@@ -14,7 +14,7 @@ namespace nlos {
 /// Backprojection: v(p) = sum over pairs (l, s) of H(l, s; |l - p| + |p - s|), linear in time
 /// between bin centres. Adjoint of a forward model without cosines, and without falloff unless each
 /// term is multiplied by what the light lost on its way. Where some bins were not observed, sums
-/// are divided by the share of their terms that was, see divide_by_observed_share().
+/// are divided by the fraction of their terms that was, see divide_by_observed_fraction().
 ///
 /// input      any scan; confocal grids whose y positions share a lattice with the voxels' take the
 ///            fast way (shifted additions of whole rows), all others the general one
@@ -26,8 +26,8 @@ MethodTraits::Run backproject;
 MethodTraits::Bytes backproject_bytes;
 
 /// Magnitude of the backprojection of histograms convolved with the phasor field's virtual wave,
-/// and divided by the observed share as in backproject(). Settings: phasor, whose wavelength_m must
-/// be set. Source: [Liu2019].
+/// and divided by the observed fraction as in backproject(). Settings: phasor, whose wavelength_m
+/// must be set. Source: [Liu2019].
 MethodTraits::Run phasor_backprojection;
 MethodTraits::Bytes phasor_backprojection_bytes;
 
@@ -39,8 +39,8 @@ template <class Real>
 struct ConfocalGrid {
     const WallGrid& grid;
     core::TimeAxis time_axis;
-    std::span<const Real> histograms;     ///< [point of the capture][bin]
-    std::vector<double> device_legs_m{};  ///< per point, part of the axis; empty: none
+    std::span<const Real> histograms;         ///< [point of the capture][bin]
+    std::vector<double> device_segments_m{};  ///< per point, part of the axis; empty: none
     Compensation compensation = Compensation::None;
 };
 
@@ -49,11 +49,11 @@ template <class Real>
 struct PairList {
     core::ScanPattern pattern;
     core::TimeAxis time_axis;
-    std::span<const Real> histograms;         ///< [pair][bin], pairs as in core::WallScan
-    std::vector<core::Vec3> illumination;     ///< [m]; confocal: the same as `sensing`
-    std::vector<core::Vec3> sensing;          ///< [m]
-    std::vector<double> illumination_legs_m;  ///< laser to each point, part of the axis
-    std::vector<double> sensing_legs_m;       ///< each point to the detector, part of the axis
+    std::span<const Real> histograms;             ///< [pair][bin], pairs as in core::WallScan
+    std::vector<core::Vec3> illumination;         ///< [m]; confocal: the same as `sensing`
+    std::vector<core::Vec3> sensing;              ///< [m]
+    std::vector<double> illumination_segments_m;  ///< laser to each point, part of the axis
+    std::vector<double> sensing_segments_m;       ///< each point to the detector, part of the axis
     Compensation compensation = Compensation::None;
 };
 
@@ -77,20 +77,20 @@ void backproject_pairs(const PairList<Real>& data,
                        std::span<Real> volume,
                        const core::Progress& progress);
 
-/// Divides the backprojected sums of a capture whose bins were not all observed by the share of
+/// Divides the backprojected sums of a capture whose bins were not all observed by the fraction of
 /// each voxel's look-ups that met an observed bin, of those within the axis. What is left are sums
 /// as of the whole capture, and no trace of which points were dead or where their gates began.
 ///
 /// Few look-ups that all meet light are weak evidence: no voxel is raised to more than twice what
-/// the mean share, over all observed look-ups, would raise it to. A voxel that nobody looked at
+/// the mean fraction, over all observed look-ups, would raise it to. A voxel that nobody looked at
 /// stays 0.
 ///
 /// input    with `observed`
 /// throws   core::Failure when asked to stop
-void divide_by_observed_share(const MethodInput& input, std::size_t num_slabs, Volume& volume);
+void divide_by_observed_fraction(const MethodInput& input, std::size_t num_slabs, Volume& volume);
 
 /// Memory that this takes on top of its input [bytes]; 0 when all bins were observed.
-double observed_share_bytes(const MethodInput& input);
+double observed_fraction_bytes(const MethodInput& input);
 
 /// Voxels and wall points along y seen as every n-th point of one lattice.
 struct CommonLattice {

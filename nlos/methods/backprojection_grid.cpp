@@ -39,13 +39,14 @@ struct Slices {
     }
 };
 
-/// The axis of all points once device legs are taken off: starts at the longest leg's bin 0.
+/// The axis of all points once device segments are taken off: starts at the longest segment's bin
+/// 0.
 template <class Real>
 core::TimeAxis wall_axis(const ConfocalGrid<Real>& data) {
     core::TimeAxis axis = data.time_axis;
-    if (data.device_legs_m.empty()) return axis;
+    if (data.device_segments_m.empty()) return axis;
     const auto [low, high] =
-        std::minmax_element(data.device_legs_m.begin(), data.device_legs_m.end());
+        std::minmax_element(data.device_segments_m.begin(), data.device_segments_m.end());
     axis.opl_start_m -= *high;
     axis.num_bins += static_cast<int>(std::ceil((*high - *low) / axis.bin_width_m - 1e-9));
     return axis;
@@ -69,9 +70,10 @@ Slices<Real> make_slices(const ConfocalGrid<Real>& data,
         Real* rows = slices.values.data() + row * (slices.num_bins + 2) * slices.row_stride;
         for (std::size_t n = 0; n < slices.num_y; ++n) {
             const std::size_t point = data.grid.point(walls.begin + row, first_y + n * step);
-            const double leg = data.device_legs_m.empty() ? 0.0 : data.device_legs_m[point];
+            const double segment =
+                data.device_segments_m.empty() ? 0.0 : data.device_segments_m[point];
             const double shift =
-                (data.time_axis.opl_start_m - leg - axis.opl_start_m) / axis.bin_width_m;
+                (data.time_axis.opl_start_m - segment - axis.opl_start_m) / axis.bin_width_m;
             const double whole = std::floor(shift + 1e-9);
             const double late = std::max(0.0, shift - whole);
             Real* out =

@@ -36,43 +36,43 @@ struct VoxelBlock {
     std::size_t size() const { return sums.size(); }
 };
 
-/// One leg of the light's way to every voxel of a block.
+/// One segment of the light's way to every voxel of a block.
 template <class Real>
-struct Leg {
+struct Segment {
     std::vector<Real> distances;  ///< to a wall point, plus an offset, in bins
     std::vector<Real> factors;    ///< make up for the light lost; empty: none
 };
 
 /// A wall point and what the path to it is longer by.
-struct LegEnd {
+struct SegmentEnd {
     core::Vec3 point;
     double offset_m = 0.0;
 };
 
 template <class Real>
-void fill_leg(const VoxelBlock<Real>& block,
-              const LegEnd& end,
-              double bin_width_m,
-              Compensation compensation,
-              Leg<Real>& leg) {
+void fill_segment(const VoxelBlock<Real>& block,
+                  const SegmentEnd& end,
+                  double bin_width_m,
+                  Compensation compensation,
+                  Segment<Real>& segment) {
     const auto px = static_cast<Real>(end.point.x());
     const auto py = static_cast<Real>(end.point.y());
     const auto pz = static_cast<Real>(end.point.z());
     const auto per_bin = static_cast<Real>(1.0 / bin_width_m);
     const auto offset = static_cast<Real>(end.offset_m / bin_width_m);
     const std::size_t count = block.size();
-    leg.distances.resize(count);
+    segment.distances.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         const Real dx = block.x[i] - px;
         const Real dy = block.y[i] - py;
         const Real dz = block.z[i] - pz;
-        leg.distances[i] = std::sqrt(dx * dx + dy * dy + dz * dz) * per_bin + offset;
+        segment.distances[i] = std::sqrt(dx * dx + dy * dy + dz * dz) * per_bin + offset;
     }
     if (compensation == Compensation::None) return;
-    leg.factors.resize(count);
+    segment.factors.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
-        const auto distance = (leg.distances[i] - offset) * static_cast<Real>(bin_width_m);
-        leg.factors[i] = compensation == Compensation::Diffuse ? distance * distance : distance;
+        const auto distance = (segment.distances[i] - offset) * static_cast<Real>(bin_width_m);
+        segment.factors[i] = compensation == Compensation::Diffuse ? distance * distance : distance;
     }
 }
 
@@ -110,15 +110,15 @@ FloatLanes pick(const FloatVector& low, const FloatVector& high, const IntVector
 #endif
 }
 
-/// padded[places] and padded[places + 1]. Voxels in a row find their values close together and in
+/// padded[lower] and padded[lower + 1]. Voxels in a row find their values close together and in
 /// order, mostly within two vectors, which one instruction searches; gathers take several times as
 /// long.
-std::array<FloatLanes, 2> read_neighbours(const float* padded, IntLanes places) {
-    const int first = places[0];
-    const IntLanes behind = places - first;
+std::array<FloatLanes, 2> read_neighbours(const float* padded, IntLanes lower) {
+    const int first = lower[0];
+    const IntLanes behind = lower - first;
     if (stdx::any_of(behind < 0 || behind > 2 * kFloatLanes - 2)) {
-        return {FloatLanes([&](auto lane) { return padded[places[lane]]; }),
-                FloatLanes([&](auto lane) { return padded[places[lane] + 1]; })};
+        return {FloatLanes([&](auto lane) { return padded[lower[lane]]; }),
+                FloatLanes([&](auto lane) { return padded[lower[lane] + 1]; })};
     }
     IntVector indices;
     FloatVector low, high;
@@ -133,8 +133,8 @@ std::array<FloatLanes, 2> read_neighbours(const float* padded, IntLanes places) 
 /// returns   the number of voxels done
 std::size_t add_rows_of_lookups(const float* padded,
                                 float last,
-                                const Leg<float>& out,
-                                const Leg<float>& back,
+                                const Segment<float>& out,
+                                const Segment<float>& back,
                                 VoxelBlock<float>& block) {
     constexpr auto kAnywhere = stdx::element_aligned;
     const bool has_factors = !out.factors.empty();
@@ -143,9 +143,9 @@ std::size_t add_rows_of_lookups(const float* padded,
         FloatLanes position = FloatLanes(out.distances.data() + i, kAnywhere) +
                               FloatLanes(back.distances.data() + i, kAnywhere);
         position = stdx::clamp(position, FloatLanes(0.0F), FloatLanes(last));
-        const auto places = stdx::static_simd_cast<IntLanes>(position);
-        const FloatLanes late = position - stdx::static_simd_cast<FloatLanes>(places);
-        const auto [here, next] = read_neighbours(padded, places);
+        const auto lower = stdx::static_simd_cast<IntLanes>(position);
+        const FloatLanes late = position - stdx::static_simd_cast<FloatLanes>(lower);
+        const auto [here, next] = read_neighbours(padded, lower);
         FloatLanes term = here + late * (next - here);
         if (has_factors) {
             term *= FloatLanes(out.factors.data() + i, kAnywhere) *
@@ -157,14 +157,14 @@ std::size_t add_rows_of_lookups(const float* padded,
     return i;
 }
 
-/// Adds interpolated histogram values at the sums of two legs (in bins, 1 = centre of bin 0).
+/// Adds interpolated histogram values at the sums of two segments (in bins, 1 = centre of bin 0).
 ///
 /// padded   histogram with one zero before it, two behind it, and kReadBehind more
 template <class Real>
 void add_lookups(const Real* padded,
                  std::size_t num_bins,
-                 const Leg<Real>& out,
-                 const Leg<Real>& back,
+                 const Segment<Real>& out,
+                 const Segment<Real>& back,
                  VoxelBlock<Real>& block) {
     const auto last = static_cast<Real>(num_bins + 1);
     std::size_t i = 0;
@@ -189,16 +189,16 @@ class PairBackprojector {
         VoxelBlock<Real> block(axes_, begin, end);
         std::vector<Real> padded(num_bins_ + 3 + kReadBehind, Real{0});
         const bool is_confocal = data_.pattern == core::ScanPattern::Confocal;
-        std::vector<Leg<Real>> out(is_confocal ? 1 : data_.illumination.size());
+        std::vector<Segment<Real>> out(is_confocal ? 1 : data_.illumination.size());
         for (std::size_t l = 0; l < out.size() && !is_confocal; ++l) {
-            fill_illumination_leg(l, block, out[l]);
+            fill_illumination_segment(l, block, out[l]);
         }
-        Leg<Real> back;
+        Segment<Real> back;
         const std::size_t num_sensing = data_.sensing.size();
         for (std::size_t s = 0; s < num_sensing; ++s) {
-            fill_sensing_leg(s, block, back);
+            fill_sensing_segment(s, block, back);
             if (is_confocal) {
-                fill_illumination_leg(s, block, out[0]);
+                fill_illumination_segment(s, block, out[0]);
                 add_pair(s, out[0], back, padded, block);
                 continue;
             }
@@ -210,27 +210,31 @@ class PairBackprojector {
     }
 
  private:
-    void fill_illumination_leg(std::size_t l, const VoxelBlock<Real>& block, Leg<Real>& leg) const {
-        fill_leg(block,
-                 {data_.illumination[l], data_.illumination_legs_m[l]},
-                 data_.time_axis.bin_width_m,
-                 data_.compensation,
-                 leg);
+    void fill_illumination_segment(std::size_t l,
+                                   const VoxelBlock<Real>& block,
+                                   Segment<Real>& segment) const {
+        fill_segment(block,
+                     {data_.illumination[l], data_.illumination_segments_m[l]},
+                     data_.time_axis.bin_width_m,
+                     data_.compensation,
+                     segment);
     }
 
     /// Bin 0's centre stands half a bin behind the axis start and at 1 in a padded histogram.
-    void fill_sensing_leg(std::size_t s, const VoxelBlock<Real>& block, Leg<Real>& leg) const {
+    void fill_sensing_segment(std::size_t s,
+                              const VoxelBlock<Real>& block,
+                              Segment<Real>& segment) const {
         const double start = data_.time_axis.opl_start_m - 0.5 * data_.time_axis.bin_width_m;
-        fill_leg(block,
-                 {data_.sensing[s], data_.sensing_legs_m[s] - start},
-                 data_.time_axis.bin_width_m,
-                 data_.compensation,
-                 leg);
+        fill_segment(block,
+                     {data_.sensing[s], data_.sensing_segments_m[s] - start},
+                     data_.time_axis.bin_width_m,
+                     data_.compensation,
+                     segment);
     }
 
     void add_pair(std::size_t pair,
-                  const Leg<Real>& out,
-                  const Leg<Real>& back,
+                  const Segment<Real>& out,
+                  const Segment<Real>& back,
                   std::vector<Real>& padded,
                   VoxelBlock<Real>& block) const {
         std::copy_n(data_.histograms.data() + pair * num_bins_, num_bins_, padded.begin() + 1);

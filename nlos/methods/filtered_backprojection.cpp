@@ -118,7 +118,7 @@ Volume phasor_backprojection(const MethodInput& input,
     const auto run = [&](WavePart part, double begin, double end) {
         const FilteredHistograms filtered = filter_histograms(input, settings.phasor, part);
         const double all =
-            input.observed ? 1.0 / 3.0 : 1.0;  // of the work, the share comes after it
+            input.observed ? 1.0 / 3.0 : 1.0;  // of the work, the fraction comes after it
         const core::Progress progress = input.progress.part(begin * all, end * all);
         return backproject(with_histograms(input, filtered.time_axis, filtered.transient, progress),
                            uncompensated,
@@ -129,7 +129,7 @@ Volume phasor_backprojection(const MethodInput& input,
     for (std::size_t i = 0; i < volume.values.size(); ++i) {
         volume.values[i] = std::hypot(volume.values[i], imaginary.values[i]);
     }
-    if (input.observed) divide_by_observed_share(input, num_slabs, volume);
+    if (input.observed) divide_by_observed_fraction(input, num_slabs, volume);
     return volume;
 }
 
@@ -138,7 +138,7 @@ double phasor_backprojection_bytes(const MethodInput& input,
                                    std::size_t num_slabs) {
     const core::TimeAxis axis = filtered_axis(input.time_axis, settings.phasor);
     return 4.0 * static_cast<double>(input.transient.num_pairs()) * axis.num_bins +
-           observed_share_bytes(input) +
+           observed_fraction_bytes(input) +
            laplacian_backprojection_bytes(
                with_histograms(input, axis, input.transient, input.progress), settings, num_slabs);
 }

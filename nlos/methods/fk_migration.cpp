@@ -42,8 +42,8 @@ double squared_sinc(double x) {
     return std::abs(angle) < 1e-9 ? 1.0 : std::pow(std::sin(angle) / angle, 2);
 }
 
-/// The derivative along range of a frequency in shares of the bins' highest, but for the factor i.
-/// Near that one bins alias and counts are noise: a window closes there.
+/// The derivative along range of a frequency in fractions of the bins' highest, but for the factor
+/// i. Near that one bins alias and counts are noise: a window closes there.
 double windowed_derivative(double frequency) {
     constexpr double kWindowPower = 6.0;
     return frequency * std::pow(std::cos(0.5 * core::kPi * frequency), kWindowPower);
@@ -51,7 +51,7 @@ double windowed_derivative(double frequency) {
 
 FkGrids make_grids(const MethodInput& input) {
     const core::TimeAxis& axis = input.time_axis;
-    const auto [shortest, longest] = core::device_leg_range_m(input.scan);
+    const auto [shortest, longest] = core::device_segment_range_m(input.scan);
     const double begin = std::max(0.0, 0.5 * (axis.opl_start_m - longest));
     const double end = std::max(begin + axis.bin_width_m, 0.5 * (axis.opl_end_m() - shortest));
     FkGrids grids;
@@ -87,8 +87,9 @@ class RangeTransform {
           falloff_(falloff),
           forward_(Fft::real_to_complex(grids.length, kColumnsPerBatch)) {
         for (std::size_t f = 0; f < grids.num_frequencies(); ++f) {
-            const double share = 2.0 * static_cast<double>(f) / static_cast<double>(grids.length);
-            derivative_.push_back(static_cast<float>(windowed_derivative(share)));
+            const double fraction =
+                2.0 * static_cast<double>(f) / static_cast<double>(grids.length);
+            derivative_.push_back(static_cast<float>(windowed_derivative(fraction)));
         }
     }
 
@@ -137,7 +138,7 @@ class RangeTransform {
     }
     /// The range of a pair's first bin [m].
     double first_range(std::size_t pair) const {
-        return 0.5 * (input_.time_axis.bin_center_m(0.0) - input_.scan.device_legs_m(pair));
+        return 0.5 * (input_.time_axis.bin_center_m(0.0) - input_.scan.device_segments_m(pair));
     }
 
     /// What bins are multiplied by whose first one lies at this range.
@@ -202,7 +203,8 @@ class LateralTransform {
         }
     }
 
-    /// Adds the slab's share of depth sample `z` to `amplitudes` (x, y), the field's real part.
+    /// Adds the slab's contribution of depth sample `z` to `amplitudes` (x, y), the field's real
+    /// part.
     void add_amplitudes(const ComplexF* field,
                         const RowSlab& slab,
                         std::size_t z,
@@ -243,7 +245,7 @@ void fill_voxels(const FkGrids& grids,
     LateralTransform::Workspace work = lateral.make_workspace();
     const std::size_t count = end - begin;
     const std::size_t num_columns = grids.num_columns();
-    const float share = 1.0F / static_cast<float>(grids.samples);
+    const float fraction = 1.0F / static_cast<float>(grids.samples);
     std::vector<float> sums(num_columns * count, 0.0F);
     std::vector<float> amplitudes(num_columns);
     for (std::size_t z = begin * grids.samples; z < end * grids.samples; ++z) {
@@ -255,7 +257,7 @@ void fill_voxels(const FkGrids& grids,
         lateral.add_amplitudes(field, slab, z, work, amplitudes.data());
         float* sum = sums.data() + z / grids.samples - begin;
         for (std::size_t column = 0; column < num_columns; ++column) {
-            sum[column * count] += share * amplitudes[column];
+            sum[column * count] += fraction * amplitudes[column];
         }
     }
     for (std::size_t column = 0; column < num_columns; ++column) {

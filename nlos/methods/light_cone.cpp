@@ -15,7 +15,7 @@ constexpr std::size_t kColumnsPerBlock = 16;
 /// Histogram of path length -> g(v), the convolution's data: bins of range [r_k, r_k+1] moved to
 /// bins of v = r^2, each multiplied by r^p; dr/dv is in the bins' widths.
 ConservativeResampling path_length_to_squared_range(const core::TimeAxis& axis,
-                                                    double leg_m,
+                                                    double segment_m,
                                                     const Cone& cone,
                                                     double power) {
     const auto num_bins = static_cast<std::size_t>(axis.num_bins);
@@ -24,7 +24,7 @@ ConservativeResampling path_length_to_squared_range(const core::TimeAxis& axis,
     double previous = 0.0;
     for (std::size_t k = 0; k <= num_bins; ++k) {
         const double range =
-            std::max(0.0, 0.5 * (axis.bin_begin_m(static_cast<double>(k)) - leg_m));
+            std::max(0.0, 0.5 * (axis.bin_begin_m(static_cast<double>(k)) - segment_m));
         edges[k] = range * range;
         if (k > 0) scale[k - 1] = std::pow(0.5 * (previous + range), power);
         previous = range;
@@ -59,15 +59,15 @@ std::vector<Float*> starts(Float* first, std::size_t stride, std::size_t count) 
 
 Cone make_cone(const MethodInput& input, double bins_per_bin) {
     Cone cone;
-    const auto [shortest_leg, longest_leg] = core::device_leg_range_m(input.scan);
-    cone.min_leg_m = shortest_leg;
+    const auto [shortest_segment, longest_segment] = core::device_segment_range_m(input.scan);
+    cone.min_segment_m = shortest_segment;
     const core::TimeAxis& axis = input.time_axis;
-    cone.is_same_for_all = longest_leg - shortest_leg < 1e-6 * axis.bin_width_m;
+    cone.is_same_for_all = longest_segment - shortest_segment < 1e-6 * axis.bin_width_m;
     // With what was cut off because nobody looked there: on the transform's period and bins depends
     // the background that it leaves, and on where it begins what can be told before the gate.
     const double start_m = axis.opl_start_m - input.unobserved_before_m;
-    const double begin = std::max(0.0, 0.5 * (start_m - longest_leg));
-    const double end = 0.5 * (axis.opl_end_m() - shortest_leg);
+    const double begin = std::max(0.0, 0.5 * (start_m - longest_segment));
+    const double end = 0.5 * (axis.opl_end_m() - shortest_segment);
     const double num_bins = std::ceil((end - begin) / (0.5 * axis.bin_width_m) - 1e-6);
     if (!(num_bins >= 4.0)) {
         throw core::Error("method",
@@ -96,7 +96,7 @@ ConeData::ConeData(const MethodInput& input, const Cone& cone, double power)
     : input_(input),
       cone_(cone),
       power_(power),
-      common_(path_length_to_squared_range(input.time_axis, cone.min_leg_m, cone, power)) {}
+      common_(path_length_to_squared_range(input.time_axis, cone.min_segment_m, cone, power)) {}
 
 std::size_t ConeData::pair_of(std::size_t column) const {
     return input_.wall.grid->point(column / cone_.ny, column % cone_.ny);
@@ -112,8 +112,8 @@ void ConeData::fill(std::size_t first_column, std::span<float* const> rows) cons
         return;
     }
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        const double leg_m = input_.scan.device_legs_m(pair_of(first_column + i));
-        path_length_to_squared_range(input_.time_axis, leg_m, cone_, power_)
+        const double segment_m = input_.scan.device_segments_m(pair_of(first_column + i));
+        path_length_to_squared_range(input_.time_axis, segment_m, cone_, power_)
             .apply(histograms[i], rows[i]);
     }
 }
@@ -128,7 +128,7 @@ core::BinRange ConeData::observed(std::size_t column) const {
     // Where on the v axis a bin of the histogram begins; an end of what was measured is an end of
     // v.
     const auto edge = [&](int bin) {
-        const double length_m = axis.bin_begin_m(bin) - input_.scan.device_legs_m(pair);
+        const double length_m = axis.bin_begin_m(bin) - input_.scan.device_segments_m(pair);
         return std::pow(std::max(0.0, 0.5 * length_m), 2);
     };
     const auto index = [&](auto found) { return static_cast<int>(found - cone_.v_edges.begin()); };
@@ -180,26 +180,27 @@ ConeKernel::ConeKernel(const Cone& cone, const WallGrid& grid)
 
 ConeKernel::Spectrum::Spectrum(const ConeKernel& kernel, std::size_t k) : kernel_(kernel), k_(k) {
     for (const std::size_t shift : kernel.shift_) {
-        places_.push_back(static_cast<std::uint32_t>(shift * k % kernel.phases_.size()));
+        phase_indices_.push_back(static_cast<std::uint32_t>(shift * k % kernel.phases_.size()));
     }
 }
 
 void ConeKernel::Spectrum::next(ComplexF* quadrant) {
-    const std::size_t size = places_.size();
+    const std::size_t size = phase_indices_.size();
     const ComplexF* const phases = kernel_.phases_.data();
     const float* const here = kernel_.here_.data();
     const float* const next = kernel_.next_.data();
     const std::uint32_t* const shift = kernel_.shift_.data();
-    std::uint32_t* const places = places_.data();
+    std::uint32_t* const phase_indices = phase_indices_.data();
     const auto period = static_cast<std::uint32_t>(kernel_.phases_.size());
     const ComplexF step = phases[k_++ % period];
     for (std::size_t i = 0; i < size; ++i) {
         const ComplexF split{here[i] + next[i] * step.real(), next[i] * step.imag()};
-        quadrant[i] = multiply(phases[places[i]], split);
+        quadrant[i] = multiply(phases[phase_indices[i]], split);
     }
     for (std::size_t i = 0; i < size; ++i) {
-        const std::uint32_t place = places[i] + shift[i];
-        places[i] = std::min(place, place - period);  // below a period, the difference is huge
+        const std::uint32_t phase_index = phase_indices[i] + shift[i];
+        phase_indices[i] =
+            std::min(phase_index, phase_index - period);  // below a period, the difference is huge
     }
 }
 
@@ -244,11 +245,11 @@ void add_spectrum_to_depth(const MethodInput& input,
             FftBuffer rows(spectra.num_floats());
             spectrum_rows(spectra, cone, begin, end, spectrum, slab).copy_to_rows();
             inverse.run(spectra, rows);
-            std::vector<float> shares((end - begin) * nz);
+            std::vector<float> contributions((end - begin) * nz);
             const auto inputs = starts<const float>(rows.data(), row_floats, end - begin);
-            to_depth.apply(inputs, starts(shares.data(), nz, end - begin));
+            to_depth.apply(inputs, starts(contributions.data(), nz, end - begin));
             float* voxels = values.data() + begin * nz;
-            for (std::size_t i = 0; i < shares.size(); ++i) voxels[i] += shares[i];
+            for (std::size_t i = 0; i < contributions.size(); ++i) voxels[i] += contributions[i];
         });
 }
 

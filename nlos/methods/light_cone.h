@@ -27,8 +27,8 @@ struct Cone {
     std::size_t nx = 0, ny = 0;   ///< wall points
     std::size_t px = 0, py = 0;   ///< padded to at least twice
     std::size_t length = 0;       ///< padded number of v bins, see cone_period()
-    bool is_same_for_all = true;  ///< device legs are the same for every pair
-    double min_leg_m = 0.0;       ///< the shortest device legs
+    bool is_same_for_all = true;  ///< device segments are the same for every pair
+    double min_segment_m = 0.0;   ///< the shortest device segments
 
     std::size_t num_v() const { return v_edges.size() - 1; }
     double v_width() const { return v_edges[1] - v_edges[0]; }
@@ -112,7 +112,7 @@ class ConeKernel {
      private:
         const ConeKernel& kernel_;
         std::size_t k_;
-        std::vector<std::uint32_t> places_;  ///< of each entry's phase
+        std::vector<std::uint32_t> phase_indices_;  ///< of each entry's phase
     };
 
  private:
@@ -124,7 +124,7 @@ class ConeKernel {
 };
 
 /// Room for the spectrum of the largest of `num_slabs` slabs. One buffer serves all of them:
-/// freeing and allocating again fragments the heap, which would take more memory than stated.
+/// freeing and allocating again fragments the heap, which would take more memory than given.
 FftBuffer make_slab_spectrum(const Cone& cone, std::size_t num_slabs);
 
 /// g(v) of all wall points, transformed along v at a slab of its frequencies: stored [frequency of
@@ -136,8 +136,8 @@ void fill_cone_spectrum(const MethodInput& input,
                         FftBuffer& spectrum,
                         const ProgressSpan& span);
 
-/// Back from frequencies along v to voxels along z, negative values kept: adds the slab's share to
-/// `values`, stored [x][y][z].
+/// Back from frequencies along v to voxels along z, negative values kept: adds the slab's
+/// contribution to `values`, stored [x][y][z].
 void add_spectrum_to_depth(const MethodInput& input,
                            const Cone& cone,
                            FftBuffer& spectrum,

@@ -70,7 +70,7 @@ MethodChoice preferred_method(const PreparedCapture& prepared, const VolumeSetti
 std::string why_statistical(const ReconstructSettings& settings, const PreparedCapture& prepared) {
     if (prepared.unit == core::TransientUnit::Counts) return "photon counts";
     if (prepared.observed) return "bins that were not observed";
-    return core::is_stated(settings.response) ? "a response" : "";
+    return core::is_given(settings.response) ? "a response" : "";
 }
 
 MethodChoice choose_automatically(const ReconstructSettings& settings,
@@ -158,7 +158,7 @@ std::optional<std::string> directions_warning(const PreparedCapture& prepared) {
     const std::size_t pairs = prepared.scan.num_pairs();
     if (const auto why = why_no_directions(prepared)) {
         return fmt::format(
-            "{} {} distances rather than directions: {}, and no surface is stated there; "
+            "{} {} distances rather than directions: {}, and no surface is given there; "
             "capture.wall_size_m corrects the points' extents; {}",
             pairs == 1 ? "one pair of wall points" : fmt::format("{} pairs of wall points", pairs),
             pairs == 1 ? "tells" : "tell",

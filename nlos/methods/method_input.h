@@ -82,7 +82,7 @@ inline void check_stop(const core::Progress& progress) {
     if (progress.should_stop()) throw core::Failure("reconstruct", "interrupted");
 }
 
-/// A part of a method's work in the shares it reports.
+/// A part of a method's work in the fractions it reports.
 struct ProgressSpan {
     const core::Progress& progress;
     double begin = 0.0;
@@ -108,8 +108,8 @@ inline void parallel_blocks_with_progress(
         });
         if (watch.seconds() < kStageSeconds) stage *= 2;
         done += size;
-        const double share = static_cast<double>(done) / static_cast<double>(count);
-        span.progress.update(span.begin + share * (span.end - span.begin), span.detail);
+        const double fraction = static_cast<double>(done) / static_cast<double>(count);
+        span.progress.update(span.begin + fraction * (span.end - span.begin), span.detail);
     }
 }
 

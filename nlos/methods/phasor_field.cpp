@@ -85,9 +85,9 @@ struct Band {
 
 Band make_band(const MethodInput& input, const Slab& planes, const PhasorSettings& settings) {
     const core::TimeAxis& axis = input.time_axis;
-    const std::array<double, 2> legs = core::device_leg_range_m(input.scan);
-    const double shortest_leg = legs[0];
-    const double longest_leg = legs[1];
+    const std::array<double, 2> segments = core::device_segment_range_m(input.scan);
+    const double shortest_segment = segments[0];
+    const double longest_segment = segments[1];
     const double reach = 4.0 * settings.cycles * *settings.wavelength_m / 6.0;
     const auto [shortest, longest] = path_lengths(input, planes);
     const auto bin_at = [&](double opl) {
@@ -95,9 +95,10 @@ Band make_band(const MethodInput& input, const Slab& planes, const PhasorSetting
         return static_cast<int>(std::clamp(bin, 0.0, static_cast<double>(axis.num_bins)));
     };
     Band band;
-    band.bins = {bin_at(shortest + shortest_leg - reach), bin_at(longest + longest_leg + reach)};
-    const double begin = axis.bin_begin_m(band.bins.begin) - longest_leg;
-    const double end = axis.bin_begin_m(band.bins.end) - shortest_leg;
+    band.bins = {bin_at(shortest + shortest_segment - reach),
+                 bin_at(longest + longest_segment + reach)};
+    const double begin = axis.bin_begin_m(band.bins.begin) - longest_segment;
+    const double end = axis.bin_begin_m(band.bins.end) - shortest_segment;
     band.wave = make_virtual_wave(settings, std::max(longest - begin, end - shortest));
     return band;
 }
@@ -135,13 +136,13 @@ void add_wave(const MethodInput& input,
         const std::size_t end = std::min(num_illumination, first + chunk);
         const std::vector<ComplexF> spectra = propagator.spectra(
             analyse(input, wave, bins, {first * num_columns, end * num_columns}), end - first);
-        const auto share = [&](std::size_t done) {
+        const auto fraction = [&](std::size_t done) {
             return static_cast<double>(done) / static_cast<double>(num_illumination);
         };
         parallel_blocks_with_progress(
             z_m.size(),
             1,
-            {progress, share(first), share(end), "propagation"},
+            {progress, fraction(first), fraction(end), "propagation"},
             [&](std::size_t iz, std::size_t) {
                 std::vector<ComplexF> plane(num_columns);
                 propagator.add_plane(z_m[iz], spectra, {first, end}, plane);

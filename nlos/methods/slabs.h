@@ -15,7 +15,7 @@ struct Slab {
     std::size_t begin = 0, end = 0;
 
     std::size_t size() const { return end - begin; }
-    /// The share of a method's progress that belongs to this slab of `count`.
+    /// The fraction of a method's progress that belongs to this slab of `count`.
     core::Progress part_of(const core::Progress& progress, std::size_t count) const {
         const double all = static_cast<double>(count);
         return progress.part(static_cast<double>(begin) / all, static_cast<double>(end) / all);

@@ -121,11 +121,11 @@ std::vector<ComplexF> analyse(const MethodInput& input,
         const Matrix block =
             basis * histograms_of(input.transient, pairs[0] + begin, end - begin, bins);
         for (std::size_t pair = begin; pair < end; ++pair) {
-            const double leg = input.scan.device_legs_m(pairs[0] + pair);
+            const double segment = input.scan.device_segments_m(pairs[0] + pair);
             const float* values = block.col(static_cast<Eigen::Index>(pair - begin)).data();
             for (std::size_t i = 0; i < n; ++i) {
                 const ComplexF value{values[i], values[n + i]};
-                const UnitPhasor p = unit_phasor(wave.frequency(i) * leg);
+                const UnitPhasor p = unit_phasor(wave.frequency(i) * segment);
                 coefficients[i * num_pairs + pair] = value * ComplexF{p.re, p.im};
             }
         }

@@ -53,7 +53,7 @@ double default_wavelength_m(const core::WallScan& scan,
 VirtualWave make_virtual_wave(const PhasorSettings& settings, double span_m);
 
 /// Coefficients of histograms at the wave's frequencies, times the wave's amplitudes: sum over bins
-/// of H exp(-2 pi i f (bin centre - device legs)).
+/// of H exp(-2 pi i f (bin centre - device segments)).
 ///
 /// pairs     which [begin, end)
 /// returns   stored [frequency][pair - begin]
@@ -74,8 +74,8 @@ struct FilteredHistograms {
 /// wavelength, and room for the wave before and behind.
 core::TimeAxis filtered_axis(const core::TimeAxis& axis, const PhasorSettings& settings);
 
-/// Convolves every histogram with a part of the wave, on filtered_axis(). Device legs stay part of
-/// the axis.
+/// Convolves every histogram with a part of the wave, on filtered_axis(). Device segments stay part
+/// of the axis.
 FilteredHistograms filter_histograms(const MethodInput& input,
                                      const PhasorSettings& settings,
                                      WavePart part);

@@ -21,12 +21,12 @@ constexpr double kBrightestOfAnimation = 0.001;  // of all values, drawn in the 
 using Bins = std::array<std::size_t, 2>;  // first and one past the last
 
 /// One scale for all: of light that is faint in any of them, one that shows it.
-void share_scale(double brightest_share, std::vector<ImagePanel>& images) {
+void share_scale(double brightest_fraction, std::vector<ImagePanel>& images) {
     std::vector<float> values;
     for (const ImagePanel& image : images) {
         values.insert(values.end(), image.values.begin(), image.values.end());
     }
-    const std::array<double, 2> range = light_range(std::move(values), brightest_share);
+    const std::array<double, 2> range = light_range(std::move(values), brightest_fraction);
     bool is_faint = false;
     for (ImagePanel& image : images) {
         is_faint = is_faint || image.value_scale == ValueScale::Gamma;
@@ -178,13 +178,11 @@ std::vector<ImagePanel> sequence_panels(const core::Capture& capture, std::size_
 
 std::vector<ImagePanel> animation_panels(const core::Capture& capture, std::size_t most) {
     if (!is_picture(capture.scan)) {
-        throw core::Error(
-            "film", "found a list of points", "must be a grid of points or a camera");
+        throw core::Error("film", "found a list of points", "must be a grid of points or a camera");
     }
     if (capture.sequence) return sequence_panels(capture, most);
     if (capture.transient.num_bins() < 2) {
-        throw core::Error(
-            "film", "found one time bin", "must be several, or a sequence of frames");
+        throw core::Error("film", "found one time bin", "must be several, or a sequence of frames");
     }
     return bin_panels(capture, most);
 }

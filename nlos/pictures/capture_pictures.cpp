@@ -15,7 +15,7 @@
 namespace nlos {
 namespace {
 
-constexpr double kBrightestShare = 0.0005;  // of a streak's values, drawn in the last colour
+constexpr double kBrightestFraction = 0.0005;  // of a streak's values, drawn in the last colour
 
 constexpr double kScreenGamma = 2.2;
 constexpr int kPreviewWidth = 640;        // [pixels] that small images are enlarged to
@@ -47,7 +47,7 @@ ImagePanel streak_panel(const core::Capture& capture,
     panel.y_direction = AxisDirection::Reversed;
     panel.value_label = light_per_bin_label(capture);
     panel.aspect = AspectRatio::Free;
-    panel.value_range = light_range(panel.values, kBrightestShare);
+    panel.value_range = light_range(panel.values, kBrightestFraction);
     choose_scale(panel);
     for (std::size_t i = 0; i < panel.values.size(); ++i) {
         const std::size_t pair = pair_of(scan, points[i % points.size()]);
@@ -118,8 +118,8 @@ std::string encode_preview_png(const core::Capture& capture, const core::Pinhole
     const double white = (*panel.value_range)[1];
     std::vector<Colour> colours;
     for (const float value : panel.values) {
-        const double share = white > 0.0 ? std::clamp(double{value} / white, 0.0, 1.0) : 0.0;
-        colours.push_back(colour_at(ColourMap::Grey, std::pow(share, 1.0 / kScreenGamma)));
+        const double fraction = white > 0.0 ? std::clamp(double{value} / white, 0.0, 1.0) : 0.0;
+        colours.push_back(colour_at(ColourMap::Grey, std::pow(fraction, 1.0 / kScreenGamma)));
     }
     const auto& [width, height] = camera.resolution;
     const int zoom = std::max(1, kPreviewWidth / width);

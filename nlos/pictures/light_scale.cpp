@@ -9,8 +9,8 @@
 namespace nlos {
 namespace {
 
-constexpr double kQuietShare = 0.002;  // of all light, left out at either end of the axis
-constexpr double kShownMargin = 0.02;  // of the axis, kept around what is shown
+constexpr double kQuietFraction = 0.002;  // of all light, left out at either end of the axis
+constexpr double kShownMargin = 0.02;     // of the axis, kept around what is shown
 
 bool is_rendered(const core::Capture& capture) {
     return capture.scene_info->contains("estimator");
@@ -67,19 +67,19 @@ std::array<std::size_t, 2> shown_bins(const std::vector<double>& mean) {
     double sum = 0.0;
     for (std::size_t bin = 0; bin < mean.size(); ++bin) {
         sum += std::max(0.0, mean[bin]);
-        if (first == mean.size() && sum > kQuietShare * total) first = bin;
-        if (sum <= (1.0 - kQuietShare) * total) last = bin + 1;
+        if (first == mean.size() && sum > kQuietFraction * total) first = bin;
+        if (sum <= (1.0 - kQuietFraction) * total) last = bin + 1;
     }
     const auto margin =
         static_cast<std::size_t>(std::ceil(kShownMargin * static_cast<double>(mean.size())));
     return {first > margin ? first - margin : 0, std::min(mean.size(), last + 1 + margin)};
 }
 
-std::array<double, 2> light_range(std::vector<float> values, double brightest_share) {
+std::array<double, 2> light_range(std::vector<float> values, double brightest_fraction) {
     std::erase_if(values, [](float value) { return std::isnan(value); });
     if (values.empty()) return {0.0, 0.0};
-    const float bright = core::quantile(values, 1.0 - brightest_share);
-    // A gate may hold so little that the share is all of it.
+    const float bright = core::quantile(values, 1.0 - brightest_fraction);
+    // A gate may hold so little that the fraction is all of it.
     const float top = bright > 0.0F ? bright : *std::max_element(values.begin(), values.end());
     return {0.0, double{top}};
 }

@@ -19,8 +19,8 @@ inline constexpr double kBrightestPixels = 0.01;  // of an image's values: highl
 inline constexpr const char* kRenderedRadiance = "radiance at 1 W [W/(m² sr)]";
 inline constexpr const char* kRenderedRadiancePerBin = "radiance per bin at 1 W [W/(m² sr)]";
 
-/// The label of sums over bins; the unit of radiance is stated of captures that were rendered,
-/// since nobody knows that of others.
+/// The label of sums over bins; the unit of radiance is given of captures that were rendered, since
+/// nobody knows that of others.
 std::string light_label(const core::Capture& capture);
 
 /// The label of single bins.
@@ -41,8 +41,9 @@ std::vector<double> mean_transient(const core::Capture& capture);
 /// First and one past the last bin worth showing: all but the quiet ends.
 std::array<std::size_t, 2> shown_bins(const std::vector<double>& mean);
 
-/// The range from 0 to all but a share of brightest values, so that a few cannot darken the rest.
-std::array<double, 2> light_range(std::vector<float> values, double brightest_share);
+/// The range from 0 to all but a fraction of brightest values, so that a few cannot darken the
+/// rest.
+std::array<double, 2> light_range(std::vector<float> values, double brightest_fraction);
 
 /// Draws light of which most is far below the brightest on a scale that shows it.
 void choose_scale(ImagePanel& panel);

@@ -13,7 +13,7 @@ namespace nlos {
 /// All depths but the outermost hundredth at either end; flat things get some room.
 std::optional<std::array<double, 2>> depth_range_m(const std::vector<double>& depths_m);
 
-/// The end of a scale of depth errors: a share of the median true depth, so that maps of all
+/// The end of a scale of depth errors: a fraction of the median true depth, so that maps of all
 /// results of a scene compare. Nothing unless it is positive.
 std::optional<double> error_limit_m(const std::vector<double>& true_depths_m);
 

@@ -133,15 +133,15 @@ std::array<double, 2> value_range(const ImagePanel& panel) {
 }
 
 /// Place of a value on the colour map, 0 to 1 within the range.
-double colour_share(const ImagePanel& panel, const std::array<double, 2>& range, double value) {
-    const double share = (value - range[0]) / (range[1] - range[0]);
-    return panel.value_scale == ValueScale::Gamma ? std::sqrt(std::max(0.0, share)) : share;
+double colour_fraction(const ImagePanel& panel, const std::array<double, 2>& range, double value) {
+    const double fraction = (value - range[0]) / (range[1] - range[0]);
+    return panel.value_scale == ValueScale::Gamma ? std::sqrt(std::max(0.0, fraction)) : fraction;
 }
 
 Colour colour_of(const ImagePanel& panel, const std::array<double, 2>& range, float value) {
     if (!std::isfinite(value)) return kNoValue;
     if (panel.categories.empty()) {
-        return colour_at(panel.colour_map, colour_share(panel, range, double{value}));
+        return colour_at(panel.colour_map, colour_fraction(panel, range, double{value}));
     }
     const auto number = static_cast<std::size_t>(std::max(0.0F, value));
     return number == 0 || number > panel.categories.size() ? kNoCategory
@@ -175,8 +175,8 @@ void draw_colour_bar(Canvas& canvas,
     const PixelAxis axis{0.0, 1.0, bar.bottom(), bar.y};
     const AxisTicks ticks = choose_ticks(range[0], range[1], tick_count(bar.height));
     for (std::size_t i = 0; i < ticks.values.size(); ++i) {
-        const int y =
-            static_cast<int>(std::lround(axis.pixel(colour_share(panel, range, ticks.values[i]))));
+        const int y = static_cast<int>(
+            std::lround(axis.pixel(colour_fraction(panel, range, ticks.values[i]))));
         canvas.fill({bar.right() + kLine, y - kLine / 2, kTickLength, kLine}, kAxisColour);
         canvas.text(bar.right() + 18, y, ticks.labels[i], kTickText);
     }

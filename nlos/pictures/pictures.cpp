@@ -60,12 +60,12 @@ ImagePanel empty_projection(const char* title,
     panel.y_range = cell_edges(up_m);
     panel.x_label = x_label;
     panel.y_label = y_label;
-    panel.value_label = "share of maximum";
+    panel.value_label = "fraction of maximum";
     panel.value_range = Range{0.0, 1.0};
     return panel;
 }
 
-/// The brightest share of the volume's maximum along the axis that a view looks along: from the
+/// The brightest fraction of the volume's maximum along the axis that a view looks along: from the
 /// front, along x (z to the right) and along y (x as in the front view, z upwards).
 std::vector<ImagePanel> project(const Volume& volume) {
     const auto& [x_m, y_m, z_m, pose] = volume.axes;

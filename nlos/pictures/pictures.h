@@ -13,7 +13,7 @@ namespace nlos {
 // Pictures of results, to be drawn by nlos/pictures/picture.h. Views along the wall's normal show
 // what an eye at the wall sees: y upwards and x running right to left.
 
-/// Front, side and top maximum projections, the depth map and, where stated, the probability of a
+/// Front, side and top maximum projections, the depth map and, where reported, the probability of a
 /// surface and the standard deviation of depth; two columns align their axes.
 std::vector<Panel> volume_panels(const Reconstruction& reconstruction);
 

@@ -14,14 +14,14 @@ namespace nlos {
 namespace {
 
 // Light that moves is a small part of most scenes' light: powers are drawn in decibels over this
-// share of all.
+// fraction of all.
 constexpr double kFloor = 1e-6;
 constexpr const char* kPowerLabel = "light [dB over 10⁻⁶ of all]";
 
 using Range = std::array<double, 2>;
 
-double decibels(double share) {
-    return share > kFloor ? 10.0 * std::log10(share / kFloor) : 0.0;
+double decibels(double fraction) {
+    return fraction > kFloor ? 10.0 * std::log10(fraction / kFloor) : 0.0;
 }
 
 /// The sum over all pairs, value by value.
@@ -109,10 +109,10 @@ Plot spectrum_plot(const core::VelocityHistogram& velocity) {
     for (std::size_t bin = 0; bin * stride < sums.size(); ++bin) {
         double power = 0.0;
         for (std::size_t i = bin * stride; i < (bin + 1) * stride; ++i) power += sums[i];
-        const double share = decibels(total > 0.0 ? power / total : 0.0);
+        const double fraction = decibels(total > 0.0 ? power / total : 0.0);
         // Both ends, so that the curve has the bins' steps.
         for (const std::size_t end : {bin, bin + 1}) {
-            plot.lines.front().add(axis.bin_begin_m_per_s(static_cast<double>(end)), share);
+            plot.lines.front().add(axis.bin_begin_m_per_s(static_cast<double>(end)), fraction);
         }
     }
     return plot;

@@ -48,11 +48,11 @@ struct PixelAxis {
     std::vector<double> ticks{};  ///< where numbers stand; empty: where round ones do
 
     double pixel(double value) const {
-        const auto place = [&](double of) {
+        const auto position = [&](double of) {
             return scale == AxisScale::Linear ? of : std::log(of);
         };
-        return low_px +
-               (place(value) - place(low)) / (place(high) - place(low)) * (high_px - low_px);
+        return low_px + (position(value) - position(low)) / (position(high) - position(low)) *
+                            (high_px - low_px);
     }
 };
 

@@ -21,7 +21,7 @@ constexpr int kCurveThickness = 4;
 constexpr int kDotSize = 14;
 
 constexpr double kAreaOpacity = 0.15;
-constexpr double kFreeShare = 0.04;  // of an axis, beyond the outermost points
+constexpr double kFreeFraction = 0.04;  // of an axis, beyond the outermost points
 
 Colour colour_of(const Plot& plot, std::size_t line) {
     const int of = plot.lines[line].limit_of;
@@ -52,10 +52,10 @@ std::array<double, 2> extent(const Plot& plot,
 std::array<double, 2> with_room(const std::array<double, 2>& range, AxisScale scale) {
     const auto& [low, high] = range;
     if (scale == AxisScale::Logarithmic) {
-        const double factor = high > low ? std::pow(high / low, kFreeShare) : 2.0;
+        const double factor = high > low ? std::pow(high / low, kFreeFraction) : 2.0;
         return {low / factor, high * factor};
     }
-    const double room = high > low ? kFreeShare * (high - low) : 0.5;
+    const double room = high > low ? kFreeFraction * (high - low) : 0.5;
     return {low >= 0.0 ? std::max(0.0, low - room) : low - room, high + room};
 }
 

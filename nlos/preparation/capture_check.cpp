@@ -20,7 +20,7 @@
 namespace nlos {
 namespace {
 
-constexpr double kEarlyShare = 0.01;      // of all light
+constexpr double kEarlyFraction = 0.01;   // of all light
 constexpr double kNoiseDeviations = 5.0;  // of counts: less may be noise
 constexpr double kFastestOnset = 1.25;    // of what is possible, for half of all neighbours
 constexpr std::size_t kMinCheckedPoints = 16;
@@ -61,7 +61,7 @@ EarlyLight early_light_of(const core::Capture& capture, std::size_t pair, double
     const core::TimeAxis& axis = capture.time_axis;
     const core::WallScan& scan = capture.scan.wall();
     const double shortest = (scan.illumination_point(pair) - scan.sensing_point(pair)).norm() +
-                            scan.device_legs_m(pair);
+                            scan.device_segments_m(pair);
     const auto seen = capture.observed_values(pair);
     const Eigen::Map<const Eigen::ArrayXf> values(seen.data(),
                                                   static_cast<Eigen::Index>(seen.size()));
@@ -88,7 +88,7 @@ std::optional<std::string> early_light(const core::Capture& capture,
         core::parallel_sum<EarlyLight>(capture.scan.num_pairs(), {}, [&](std::size_t pair) {
             return early_light_of(capture, pair, ambient[pair]);
         });
-    if (!(all > 0.0) || early < kEarlyShare * all) return std::nullopt;
+    if (!(all > 0.0) || early < kEarlyFraction * all) return std::nullopt;
     if (capture.unit == core::TransientUnit::Counts &&
         early < kNoiseDeviations * std::sqrt(early_counts)) {
         return std::nullopt;
@@ -100,13 +100,13 @@ std::optional<std::string> early_light(const core::Capture& capture,
         earliest_m);
 }
 
-/// Whether a histogram's peak stands so far above its background that first light, a share of it,
-/// is no noise.
+/// Whether a histogram's peak stands so far above its background that first light, a fraction of
+/// it, is no noise.
 bool has_clear_onset(const core::Capture& capture, std::size_t pair, double ambient) {
     if (capture.unit != core::TransientUnit::Counts) return true;
     const auto histogram = capture.transient.histogram(pair);
     const auto peak = static_cast<double>(*std::max_element(histogram.begin(), histogram.end()));
-    return kFirstLightShare * (peak - ambient) >
+    return kFirstLightFraction * (peak - ambient) >
            kNoiseDeviations * std::sqrt(std::max(1.0, ambient));
 }
 
@@ -182,16 +182,16 @@ bool disagrees(const BendOfFirstLight& bend, const CaptureCorrection& correction
            std::abs(std::sqrt(bend.k) * correction.length_factor - 1.0) > kFactorTolerance;
 }
 
-/// What slips in describing a capture would explain it, unless first light knows better.
-std::optional<std::string> slips(const core::Capture& capture,
-                                 const std::vector<double>& ambient,
-                                 const std::optional<BendOfFirstLight>& bend) {
-    const auto evidence = slip_evidence(capture, ambient);
+/// What mistakes in describing a capture would explain it, unless first light knows better.
+std::optional<std::string> mistakes(const core::Capture& capture,
+                                    const std::vector<double>& ambient,
+                                    const std::optional<BendOfFirstLight>& bend) {
+    const auto evidence = mistake_evidence(capture, ambient);
     if (!evidence) return std::nullopt;
     std::string text;
-    for (const CaptureCorrection& correction : recognise_slips(*evidence)) {
+    for (const CaptureCorrection& correction : recognise_mistakes(*evidence)) {
         if (bend && bent_onset(capture, bend) && disagrees(*bend, correction)) continue;
-        text += (text.empty() ? "" : "; or ") + describe_slip(capture, correction);
+        text += (text.empty() ? "" : "; or ") + describe_mistake(capture, correction);
     }
     if (text.empty()) return std::nullopt;
     return text;
@@ -233,14 +233,14 @@ std::optional<std::string> cut_light(const core::Capture& capture) {
     constexpr double kMostMissing = 0.01;
     const core::Json& made = *capture.scene_info;
     if (!made.is_object() || !made.contains("light") || !made["light"].is_object()) return {};
-    const core::Json share = made["light"].value("share_in_axis", core::Json());
-    if (!share.is_number() || share.get<double>() >= 1.0 - kMostMissing) return {};
+    const core::Json fraction = made["light"].value("share_in_axis", core::Json());
+    if (!fraction.is_number() || fraction.get<double>() >= 1.0 - kMostMissing) return {};
     return fmt::format(
         "the capture is cut by its gate: {:.4g} to {:.4g} m of path length hold "
         "{:.2g} % of the scene's light",
         capture.time_axis.opl_start_m,
         capture.time_axis.opl_end_m(),
-        100.0 * share.get<double>());
+        100.0 * fraction.get<double>());
 }
 
 /// Counts from which a background was taken off.
@@ -263,7 +263,7 @@ std::vector<std::string> description_warnings(const core::Capture& capture) {
     if (auto warning = wrong_unit(capture)) warnings.push_back(*warning);
     if (auto warning = negative_counts(capture)) warnings.push_back(*warning);
     if (!capture.scan.has_wall()) return warnings;
-    if (auto warning = wall_unit_slip(capture)) {
+    if (auto warning = wall_unit_mistake(capture)) {
         warnings.push_back(*warning);
         return warnings;  // nothing else about the wall makes sense
     }
@@ -275,7 +275,7 @@ std::vector<std::string> description_warnings(const core::Capture& capture) {
     }
     const std::vector<std::optional<double>> first_light = first_light_m(capture, ambient);
     const auto bend = bend_of_first_light(capture, first_light);
-    if (auto warning = slips(capture, ambient, bend)) {
+    if (auto warning = mistakes(capture, ambient, bend)) {
         warnings.push_back(*warning);
         return warnings;
     }

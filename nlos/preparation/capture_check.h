@@ -20,24 +20,24 @@ namespace nlos {
 /// - counts from which a background was taken off;
 /// - a time axis that cuts most light off, where the capture's provenance knows how much there is;
 /// - radiance that is whole numbers throughout, or counts that are not: the unit is wrong;
-/// - a slip in describing the capture that explains it decisively better than its description, with
-///   the option that mends it: units of length or time, one way for round trip, half the wall's
-///   width for all of it, device legs in or out, x and y exchanged, an axis or time reversed, time
-///   zero off; see recognise_slips() and possible_corrections().
+/// - a mistake in describing the capture that explains it decisively better than its description,
+///   with the option that mends it: units of length or time, one way for round trip, half the
+///   wall's width for all of it, device segments in or out, x and y exchanged, an axis or time
+///   reversed, time zero off; see recognise_mistakes() and possible_corrections().
 ///
-/// Where no single slip explains it:
+/// Where no single mistake explains it:
 ///
-/// - light that arrives before the shortest possible path, |l - s| plus device legs: time zero is
-///   late;
+/// - light that arrives before the shortest possible path, |l - s| plus device segments: time zero
+///   is late;
 /// - first light that moves along the wall faster than any path length can change (1 m per metre of
-///   sensing point, 2 if confocal): bins are narrower than stated;
+///   sensing point, 2 if confocal): bins are narrower than given;
 /// - first light of a confocal scan that bends over the wall more than any path length can, or less
-///   than that of points, edges and tips: bins are narrower or wider than stated, or the wall's
-///   size is wrong, see bend_of_first_light().
+///   than that of points, edges and tips: bins are narrower or wider than given, or the wall's size
+///   is wrong, see bend_of_first_light().
 ///
 /// Only bins that were observed count, and first light only where it came after they began.
 ///
-/// costs     a look at all values, and for slips at most 196 histograms: one fit of a tenth of a
+/// costs     a look at all values, and for mistakes at most 196 histograms: one fit of a tenth of a
 ///           second on one core where the description explains the data well, else some 10 to 25
 /// returns   empty when nothing does; nothing about timing for captures too small or dark to tell,
 ///           nor for images

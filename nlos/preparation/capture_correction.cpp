@@ -52,13 +52,13 @@ std::vector<Vec3> corrected_points(const core::WallPoints& points,
     return positions;
 }
 
-/// Half the length in the middle of the sample, device legs taken off.
+/// Half the length in the middle of the sample, device segments taken off.
 double middle_range_m(const HistogramSample& sample, const PathGeometry& geometry) {
-    double legs_m = 0.0;
-    for (const double legs : geometry.legs_m) legs_m += legs;
-    legs_m /= static_cast<double>(geometry.legs_m.size());
+    double segments_m = 0.0;
+    for (const double segments : geometry.segments_m) segments_m += segments;
+    segments_m /= static_cast<double>(geometry.segments_m.size());
     return 0.5 * (geometry.opl_start_m +
-                  0.5 * geometry.bin_width_m * static_cast<double>(sample.num_bins) - legs_m);
+                  0.5 * geometry.bin_width_m * static_cast<double>(sample.num_bins) - segments_m);
 }
 
 /// Largest distance between a sampled point and the first one.
@@ -151,7 +151,7 @@ PathGeometry corrected_geometry(const core::Capture& capture,
         const std::size_t pair = is_exhaustive ? lit * scan.sensing.size() + sensed : sensed;
         geometry.illumination.push_back(scan.illumination.positions[lit]);
         geometry.sensing.push_back(scan.sensing.positions[sensed]);
-        geometry.legs_m.push_back(scan.device_legs_m(pair));
+        geometry.segments_m.push_back(scan.device_segments_m(pair));
     }
     return geometry;
 }
@@ -164,7 +164,7 @@ bool is_mirror_image(const core::Capture& capture,
     const double tolerance = kMirrorTolerance * extent_of(own);
     const auto differ = [&](double a, double b) { return std::abs(a - b) > tolerance; };
     for (std::size_t a = 0; a < sample.pairs.size(); ++a) {
-        if (differ(own.legs_m[a], moved.legs_m[a])) return false;
+        if (differ(own.segments_m[a], moved.segments_m[a])) return false;
         for (std::size_t b = 0; b <= a; ++b) {
             const auto apart = [&](const PathGeometry& g) {
                 return std::array{(g.sensing[a] - g.sensing[b]).norm(),

@@ -17,12 +17,12 @@ namespace {
 
 constexpr std::size_t kFewestPairsForFaults = 25;
 constexpr std::size_t kNeighbours = 8;
-constexpr double kTimesNeighbours = 10.0;    // what they hold within the time that light may take
-constexpr double kTimesTheirPeaks = 3.0;     // what they hold anywhere
-constexpr double kMostFaultyPairs = 0.05;    // share of all pairs
-constexpr double kMostNegativeShare = 0.01;  // of all bins
-constexpr int kManyBins = 32;                // a point is hot with more than 1 / 32 of its bins
-constexpr double kLitNeighbours = 0.75;      // share of a dead point's
+constexpr double kTimesNeighbours = 10.0;  // what they hold within the time that light may take
+constexpr double kTimesTheirPeaks = 3.0;   // what they hold anywhere
+constexpr double kMostFaultyPairs = 0.05;  // fraction of all pairs
+constexpr double kMostNegativeFraction = 0.01;  // of all bins
+constexpr int kManyBins = 32;                   // a point is hot with more than 1 / 32 of its bins
+constexpr double kLitNeighbours = 0.75;         // fraction of a dead point's
 constexpr double kFalloffPower = 4.0;
 
 /// What a pair's histogram holds.
@@ -83,11 +83,11 @@ class FaultFinder {
  private:
     static bool is_dark(const PairLight& own) { return own.is_observed && own.is_zero; }
 
-    /// Range of a bin, at least what the shorter leg of its path may be [m].
+    /// Range of a bin, at least what the shorter segment of its path may be [m].
     double range_m(std::size_t pair, int bin) const {
         const double apart = (scan_.illumination_point(pair) - scan_.sensing_point(pair)).norm();
         const double length =
-            capture_.time_axis.bin_center_m(bin) - scan_.device_legs_m(pair) - apart;
+            capture_.time_axis.bin_center_m(bin) - scan_.device_segments_m(pair) - apart;
         return std::max(0.5 * length, 0.5 * capture_.time_axis.bin_width_m);
     }
 
@@ -145,12 +145,12 @@ class FaultFinder {
     /// some.
     double neighbours_light(std::size_t pair, int bin, std::size_t other) const {
         const double distance = distance_m(pair, other);
-        const double legs = scan_.device_legs_m(other) - scan_.device_legs_m(pair);
+        const double segments = scan_.device_segments_m(other) - scan_.device_segments_m(pair);
         const double step = (scan_.is_confocal() ? 2.0 : 1.0) * distance;
         const double per_bin = 1.0 / capture_.time_axis.bin_width_m;
         const core::BinRange near =
-            core::intersection({bin - 1 + static_cast<int>(std::floor((legs - step) * per_bin)),
-                                bin + 2 + static_cast<int>(std::ceil((legs + step) * per_bin))},
+            core::intersection({bin - 1 + static_cast<int>(std::floor((segments - step) * per_bin)),
+                                bin + 2 + static_cast<int>(std::ceil((segments + step) * per_bin))},
                                {0, capture_.time_axis.num_bins});
         if (core::intersection(near, capture_.observed_range(other)) != near) {
             return std::numeric_limits<double>::infinity();
@@ -227,7 +227,7 @@ void find_negative(const core::Capture& capture, CaptureFaults& faults) {
     if (capture.unit != core::TransientUnit::Counts) return;
     const auto values = capture.transient.values();
     const auto most =
-        static_cast<std::size_t>(kMostNegativeShare * static_cast<double>(values.size()));
+        static_cast<std::size_t>(kMostNegativeFraction * static_cast<double>(values.size()));
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (!(values[i] < 0.0F)) continue;
         faults.negative_bins.emplace_back(i / capture.transient.num_bins(),

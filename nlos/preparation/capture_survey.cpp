@@ -37,14 +37,14 @@ std::array<double, 2> light_range_m(const PreparedCapture& prepared,
                                     const std::vector<double>& light) {
     const core::TimeAxis& axis = prepared.time_axis;
     const double all = *std::ranges::max_element(light);
-    const auto bin_at = [&](double share) {
+    const auto bin_at = [&](double fraction) {
         const auto found =
-            std::ranges::find_if(light, [&](double sum) { return sum >= share * all; });
+            std::ranges::find_if(light, [&](double sum) { return sum >= fraction * all; });
         return static_cast<double>(found - light.begin());
     };
-    const auto [shortest_leg, longest_leg] = core::device_leg_range_m(prepared.scan);
-    return {std::max(0.0, 0.5 * (axis.bin_begin_m(bin_at(0.0005)) - longest_leg)),
-            std::max(0.0, 0.5 * (axis.bin_begin_m(bin_at(0.9995) + 1.0) - shortest_leg))};
+    const auto [shortest_segment, longest_segment] = core::device_segment_range_m(prepared.scan);
+    return {std::max(0.0, 0.5 * (axis.bin_begin_m(bin_at(0.0005)) - longest_segment)),
+            std::max(0.0, 0.5 * (axis.bin_begin_m(bin_at(0.9995) + 1.0) - shortest_segment))};
 }
 
 std::string range_text(const PreparedCapture& prepared, const PreparationPlan& plan) {
@@ -82,7 +82,7 @@ std::vector<std::string> survey_capture(const PreparedCapture& prepared,
         lines.push_back(fmt::format("background of {:.3g} in a bin",
                                     sum / static_cast<double>(plan.ambient_per_bin.size())));
     }
-    if (core::is_stated(settings.response)) lines.push_back(core::describe(settings.response));
+    if (core::is_given(settings.response)) lines.push_back(core::describe(settings.response));
     if (const double spot_m = settings.solver.spot_m.value_or(0.0); spot_m > 0.0) {
         lines.push_back(core::describe_spot(spot_m));
     }
@@ -92,13 +92,13 @@ std::vector<std::string> survey_capture(const PreparedCapture& prepared,
 std::optional<std::string> volume_warning(const PreparedCapture& prepared,
                                           const PreparationPlan& plan,
                                           const std::array<double, 2>& z_range_m) {
-    constexpr double kLeastShare = 0.01;
+    constexpr double kLeastFraction = 0.01;
     const std::vector<double> light = light_until_bins(prepared, plan);
     if (light.empty()) return std::nullopt;
     const WallFrame& wall = prepared.wall;
     const double farthest_m =
         std::hypot(z_range_m[1], wall.max_m[0] - wall.min_m[0], wall.max_m[1] - wall.min_m[1]);
-    const auto [shortest_leg, longest_leg] = core::device_leg_range_m(prepared.scan);
+    const auto [shortest_segment, longest_segment] = core::device_segment_range_m(prepared.scan);
     const auto light_before = [&](double length_m) {
         const core::TimeAxis& axis = prepared.time_axis;
         const double bin = std::floor((length_m - axis.opl_start_m) / axis.bin_width_m);
@@ -106,9 +106,9 @@ std::optional<std::string> volume_warning(const PreparedCapture& prepared,
         return light[static_cast<std::size_t>(std::min(bin, 1.0 * axis.num_bins)) - 1];
     };
     const double own =
-        light_before(2.0 * farthest_m + longest_leg + prepared.time_axis.bin_width_m) -
-        light_before(2.0 * z_range_m[0] + shortest_leg);
-    if (own >= kLeastShare * *std::ranges::max_element(light)) return std::nullopt;
+        light_before(2.0 * farthest_m + longest_segment + prepared.time_axis.bin_width_m) -
+        light_before(2.0 * z_range_m[0] + shortest_segment);
+    if (own >= kLeastFraction * *std::ranges::max_element(light)) return std::nullopt;
     const auto [begin, end] = light_range_m(prepared, light);
     return fmt::format(
         "no light comes from the volume, {:.4g} to {:.4g} m before the wall: all of it lies at "

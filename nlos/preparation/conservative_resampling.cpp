@@ -19,16 +19,16 @@ class Content {
     double begin() const { return begin_; }
     double end() const { return end_; }
 
-    /// The share of it before a place on the axis.
-    double before(double place) const {
+    /// The fraction of it before a place on the axis.
+    double before(double position) const {
         const double width = end_ - begin_;
-        if (place <= begin_ || !(width > 0.0)) return 0.0;
-        if (place >= end_) return 1.0;
-        if (spread_ == BinSpread::Even) return (place - begin_) / width;
-        const double from_begin = place - begin_;
-        const double to_end = end_ - place;
-        return place < middle_ ? from_begin * from_begin / (width * (middle_ - begin_))
-                               : 1.0 - to_end * to_end / (width * (end_ - middle_));
+        if (position <= begin_ || !(width > 0.0)) return 0.0;
+        if (position >= end_) return 1.0;
+        if (spread_ == BinSpread::Even) return (position - begin_) / width;
+        const double from_begin = position - begin_;
+        const double to_end = end_ - position;
+        return position < middle_ ? from_begin * from_begin / (width * (middle_ - begin_))
+                                  : 1.0 - to_end * to_end / (width * (end_ - middle_));
     }
 
  private:
@@ -56,8 +56,8 @@ ConservativeResampling::ConservativeResampling(std::span<const double> from_edge
         rows_[row].first_input = first;
         rows_[row].first_weight = weights_.size();
         for (std::size_t i = first; i < num_inputs && contents[i].begin() < end; ++i) {
-            const double share = contents[i].before(end) - contents[i].before(begin);
-            weights_.push_back(static_cast<float>(from_scale[i] * share));
+            const double fraction = contents[i].before(end) - contents[i].before(begin);
+            weights_.push_back(static_cast<float>(from_scale[i] * fraction));
             ++rows_[row].count;
         }
     }

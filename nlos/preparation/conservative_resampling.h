@@ -15,8 +15,8 @@ enum class BinSpread {
             ///< the density of even bins is linear between their middles
 };
 
-/// Moves the contents of histogram bins to other bins, each share by overlap, so that the total is
-/// kept where the new bins cover the old ones. A sparse matrix, built directly.
+/// Moves the contents of histogram bins to other bins, each fraction by overlap, so that the total
+/// is kept where the new bins cover the old ones. A sparse matrix, built directly.
 class ConservativeResampling {
  public:
     /// from_edges   ascending, one more than there are input bins

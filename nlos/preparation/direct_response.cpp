@@ -16,20 +16,20 @@ namespace {
 constexpr double kTimeZeroPs = 200.0;  // within which the peak must lie
 constexpr double kTimeZeroBins = 2.0;  // likewise
 constexpr double kEnd = 1e-3;          // of the peak
-constexpr double kShortestBins = 0.5;  // deviation of a response that is worth stating
+constexpr double kShortestBins = 0.5;  // deviation of a response that is worth reporting
 
-/// Histograms moved by their device legs to whole bins and added up.
+/// Histograms moved by their device segments to whole bins and added up.
 class AlignedSum {
  public:
     AlignedSum(const core::Capture& capture, const std::vector<double>& ambient)
         : bin_width_m_(capture.time_axis.bin_width_m) {
-        const auto [shortest, longest] = core::device_leg_range_m(capture.scan.wall());
+        const auto [shortest, longest] = core::device_segment_range_m(capture.scan.wall());
         start_m_ = capture.time_axis.opl_start_m - longest;
         has_shifts_ = longest - shortest > 1e-3 * bin_width_m_;
         const auto num_bins = static_cast<std::size_t>(capture.time_axis.num_bins);
         sum.assign(num_bins + bins(longest - shortest), 0.0);
         for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
-            const std::size_t shift = bins(longest - capture.scan.wall().device_legs_m(pair));
+            const std::size_t shift = bins(longest - capture.scan.wall().device_segments_m(pair));
             const auto histogram = capture.transient.histogram(pair);
             for (std::size_t i = 0; i < num_bins; ++i) {
                 sum[shift + i] += static_cast<double>(histogram[i]) - ambient[pair];
@@ -122,14 +122,14 @@ std::optional<DirectResponse> measure_direct_return(const core::Capture& capture
     if (!bins) return std::nullopt;
     const double end_m = aligned.center_m(bins->end) - 0.5 * bin_width_m;
     return DirectResponse{response_of(aligned, *bins, bin_width_m),
-                          end_m + core::device_leg_range_m(capture.scan.wall())[1]};
+                          end_m + core::device_segment_range_m(capture.scan.wall())[1]};
 }
 
 std::string describe(const DirectResponse& direct) {
     return fmt::format("the wall's direct return up to {:.4g} m of path length, left out; {}",
                        direct.end_opl_m,
-                       core::is_stated(direct.response) ? "its shape is taken as the response"
-                                                        : "it is no wider than a bin");
+                       core::is_given(direct.response) ? "its shape is taken as the response"
+                                                       : "it is no wider than a bin");
 }
 
 }  // namespace nlos

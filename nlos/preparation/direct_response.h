@@ -16,10 +16,10 @@ struct DirectResponse {
 };
 
 /// Measures the direct return of a confocal capture (see find_direct_return()) where it lies, to
-/// within 200 ps or 2 bins, at the length of the device legs, and whole on the axis.
+/// within 200 ps or 2 bins, at the length of the device segments, and whole on the axis.
 ///
-/// Histograms are moved by their device legs and added up. Of this sum the direct return is what
-/// falls from its peak to a thousandth of it, or until it rises again. Its variance and third
+/// Histograms are moved by their device segments and added up. Of this sum the direct return is
+/// what falls from its peak to a thousandth of it, or until it rises again. Its variance and third
 /// central moment are those of jitter and tail, a Gaussian and an exponential delay; what bins and
 /// moving by whole bins add to the variance is taken off.
 ///

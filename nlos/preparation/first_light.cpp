@@ -97,7 +97,8 @@ std::optional<double> first_light_m(const core::Capture& capture,
     const auto excess = [&](std::size_t bin) { return static_cast<double>(seen[bin]) - ambient; };
     const Eigen::Map<const Eigen::ArrayXf> values(seen.data(),
                                                   static_cast<Eigen::Index>(seen.size()));
-    const double threshold = kFirstLightShare * (static_cast<double>(values.maxCoeff()) - ambient);
+    const double threshold =
+        kFirstLightFraction * (static_cast<double>(values.maxCoeff()) - ambient);
     if (!(threshold > 0.0)) return std::nullopt;
     std::size_t bin = 0;
     while (excess(bin) < threshold) ++bin;
@@ -105,7 +106,7 @@ std::optional<double> first_light_m(const core::Capture& capture,
     const double before = bin > 0 ? excess(bin - 1) : 0.0;
     const double late = (threshold - before) / (excess(bin) - before);
     return capture.time_axis.bin_center_m(first_seen + static_cast<double>(bin) - 1.0 + late) -
-           capture.scan.wall().device_legs_m(pair);
+           capture.scan.wall().device_segments_m(pair);
 }
 
 std::vector<std::optional<double>> first_light_m(const core::Capture& capture,

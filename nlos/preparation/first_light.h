@@ -8,8 +8,8 @@
 
 namespace nlos {
 
-/// First light arrives where a histogram passes this share of its maximum.
-inline constexpr double kFirstLightShare = 0.3;
+/// First light arrives where a histogram passes this fraction of its maximum.
+inline constexpr double kFirstLightFraction = 0.3;
 
 /// Path length, from and to the wall, at which a pair's first light arrives, between bins.
 ///
@@ -32,7 +32,7 @@ std::vector<std::optional<double>> first_light_m(const core::Capture& capture,
 /// r(x) = min |p - x|, so that r^2 - |x|^2 = min (|p|^2 - 2 p.x) bends downwards everywhere, and
 /// r^2 bends upwards by 2 per metre squared at most, k = 1 in units of that. A point, an edge
 /// across and a tip reach it; a plane has k = 0, a ball of radius R seen from d has at most 1 - R /
-/// d. Bins stated s times too wide give s^2 k, and so does a wall stated s times too small.
+/// d. Bins given s times too wide give s^2 k, and so does a wall given s times too small.
 ///
 /// Quadratics are fitted to r^2 in windows of a quarter of the wall's sides, every half window; k
 /// is the larger bend. Windows whose residual exceeds a bin, or whose bend is uncertain by more

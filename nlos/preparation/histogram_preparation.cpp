@@ -13,10 +13,10 @@ namespace nlos {
 namespace {
 
 constexpr std::size_t kSegments = 32;
-constexpr std::size_t kDarkShare = 4;    // one in so many segments is taken for dark
-constexpr double kSignificance = 5.0;    // standard deviations
-constexpr double kSmallestShare = 0.01;  // of the strongest segment
-constexpr double kConstant = 0.1;        // of a background: by which its segments may differ
+constexpr std::size_t kSegmentsPerDark = 4;  // one in so many segments is taken for dark
+constexpr double kSignificance = 5.0;        // standard deviations
+constexpr double kSmallestFraction = 0.01;   // of the strongest segment
+constexpr double kConstant = 0.1;            // of a background: by which its segments may differ
 
 /// Light, its squares and the number of bins that it was observed in.
 struct SeenLight {
@@ -133,7 +133,7 @@ class SegmentedTransient {
         for (std::size_t i = 0; i < num_dark(); ++i) dark += light(pair, darkest_first_[i]);
         return dark;
     }
-    std::size_t num_dark() const { return std::max<std::size_t>(1, num_seen() / kDarkShare); }
+    std::size_t num_dark() const { return std::max<std::size_t>(1, num_seen() / kSegmentsPerDark); }
 
     /// Whether the darkest segments hold as much as each other, not nothing, and less than others.
     bool is_dark_constant() const {
@@ -208,7 +208,7 @@ std::optional<SignalExtent> find_signal(const core::Transient& transient,
     for (std::size_t i = 0; i < kSegments; ++i) {
         if (!parts.is_seen(i)) continue;
         const double excess = parts.sum(i) - ambient_sum;
-        if (excess > kSignificance * parts.deviation(i) && excess > kSmallestShare * strongest) {
+        if (excess > kSignificance * parts.deviation(i) && excess > kSmallestFraction * strongest) {
             end = static_cast<int>(i) + 1;
         }
     }
@@ -282,10 +282,10 @@ void multiply_by_range(const core::WallScan& scan,
                        double power,
                        core::Transient& transient) {
     core::parallel_for(transient.num_pairs(), [&](std::size_t pair) {
-        const double legs_m = scan.device_legs_m(pair);
+        const double segments_m = scan.device_segments_m(pair);
         const auto histogram = transient.histogram(pair);
         for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
-            const double opl = axis.bin_center_m(static_cast<double>(bin)) - legs_m;
+            const double opl = axis.bin_center_m(static_cast<double>(bin)) - segments_m;
             histogram[bin] *= static_cast<float>(std::pow(std::max(0.0, 0.5 * opl), power));
         }
     });

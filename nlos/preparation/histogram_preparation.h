@@ -49,8 +49,8 @@ std::vector<double> light_per_bin(const core::Transient& transient,
 
 /// Takes a set-up's response off histograms: a Wiener filter along time.
 ///
-/// Where the response lets through the share R of a frequency's amplitude, the filter multiplies by
-/// conj(R) / (|R|^2 + floor^2): by 1/R where |R| is well above the floor, and never by more than
+/// Where the response lets through the fraction R of a frequency's amplitude, the filter multiplies
+/// by conj(R) / (|R|^2 + floor^2): by 1/R where |R| is well above the floor, and never by more than
 /// 1 / (2 floor), which is how much it may raise noise. Delays are undone along with the blur, so
 /// that light of a response with a tail comes to lie at its length.
 ///
@@ -103,9 +103,9 @@ core::Transient prepare_histograms(const core::Transient& transient, const Prepa
 /// The observed bins of prepared histograms.
 core::ObservedBins prepared_observed(const PreparationPlan& plan);
 
-/// Multiplies every bin by range^power, range being half its path length without device legs; bins
-/// before the wall become 0. The power of the light's falloff makes equal scatterers equally bright
-/// wherever they are, without moving them.
+/// Multiplies every bin by range^power, range being half its path length without device segments;
+/// bins before the wall become 0. The power of the light's falloff makes equal scatterers equally
+/// bright wherever they are, without moving them.
 void multiply_by_range(const core::WallScan& scan,
                        const core::TimeAxis& axis,
                        double power,

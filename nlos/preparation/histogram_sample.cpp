@@ -13,12 +13,12 @@ constexpr std::size_t kMostPairs = kSide * kSide;
 constexpr std::size_t kFewestPairs = 25;  // a few zones can be explained by anything
 constexpr std::size_t kMostBins = 48;
 constexpr std::size_t kFewestBins = 8;
-constexpr double kFirstLight = 0.01;  // share of all light before the sample
+constexpr double kFirstLight = 0.01;  // fraction of all light before the sample
 constexpr double kLastLight = 0.98;
 constexpr double kMeanRadiance = 20.0;  // per bin, in place of counts
 
 constexpr double kDirectBins = 1.5;      // to which a direct return is equally late
-constexpr double kDirectShare = 0.9;     // of the pairs
+constexpr double kDirectFraction = 0.9;  // of the pairs
 constexpr double kDirectContrast = 5.0;  // against what follows
 constexpr double kMostBefore = 0.1;      // of what follows
 constexpr double kFaded = 0.03;          // of the direct return's peak
@@ -66,9 +66,9 @@ std::vector<double> light_until(const core::Capture& capture,
 bool choose_bins(const std::vector<double>& light, HistogramSample& sample) {
     const double total = *std::ranges::max_element(light);
     if (!(total > 0.0)) return false;
-    const auto bin_at = [&](double share) {
+    const auto bin_at = [&](double fraction) {
         return static_cast<std::size_t>(
-            std::ranges::find_if(light, [&](double sum) { return sum > share * total; }) -
+            std::ranges::find_if(light, [&](double sum) { return sum > fraction * total; }) -
             light.begin());
     };
     std::size_t begin = bin_at(kFirstLight);
@@ -107,7 +107,7 @@ void scale_radiance(HistogramSample& sample) {
 }
 
 double shortest_m(const core::WallScan& scan, std::size_t pair) {
-    return scan.device_legs_m(pair) +
+    return scan.device_segments_m(pair) +
            (scan.illumination_point(pair) - scan.sensing_point(pair)).norm();
 }
 
@@ -133,7 +133,7 @@ OtherLight light_beside(const std::span<const float>& histogram,
     return other;
 }
 
-/// The first bin behind `peak` where a histogram has fallen to a small share of it.
+/// The first bin behind `peak` where a histogram has fallen to a small fraction of it.
 std::size_t fading_end(const std::span<const float>& histogram, std::size_t peak, double ambient) {
     const double faded = kFaded * (static_cast<double>(histogram[peak]) - ambient);
     std::size_t end = peak + 1;
@@ -182,7 +182,7 @@ std::optional<DirectReturn> find_direct_return(const core::Capture& capture,
                          shortest_m(capture.scan.wall(), pair));
     }
     const auto count = static_cast<double>(pairs.size());
-    if (static_cast<double>(standing_out) < kDirectShare * count) return std::nullopt;
+    if (static_cast<double>(standing_out) < kDirectFraction * count) return std::nullopt;
     if (!(after > 0.0) || before > kMostBefore * after) return std::nullopt;
     std::ranges::sort(late_m);
     std::ranges::sort(fading_m);
@@ -191,7 +191,7 @@ std::optional<DirectReturn> find_direct_return(const core::Capture& capture,
     const auto equally_late = std::ranges::count_if(late_m, [&](double late) {
         return std::abs(late - found.offset_m) < kDirectBins * capture.time_axis.bin_width_m;
     });
-    if (static_cast<double>(equally_late) < kDirectShare * count) return std::nullopt;
+    if (static_cast<double>(equally_late) < kDirectFraction * count) return std::nullopt;
     return found;
 }
 

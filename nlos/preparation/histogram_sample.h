@@ -32,7 +32,7 @@ struct DirectReturn {
 };
 
 /// A capture's direct return, known by what nothing hidden does: in nearly every histogram the
-/// brightest bin is equally late against |l - s| plus device legs, far brighter than all that
+/// brightest bin is equally late against |l - s| plus device segments, far brighter than all that
 /// follows, and most of the other light follows.
 ///
 /// ambient   background per bin of every pair

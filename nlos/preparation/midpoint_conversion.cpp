@@ -88,7 +88,7 @@ core::WallPoints wall_points(const MidpointGrid& grid, const WallFrame& wall) {
 core::TimeAxis confocal_axis(const core::WallScan& scan,
                              core::TimeAxis axis,
                              std::size_t num_points) {
-    const double shortest = core::device_leg_range_m(scan)[0];
+    const double shortest = core::device_segment_range_m(scan)[0];
     const double end = std::max(axis.bin_width_m, axis.opl_end_m() - shortest);
     const double num_bins = std::ceil(end / axis.bin_width_m - 1e-6);
     require_memory(4.0 * static_cast<double>(num_points) * num_bins);
@@ -109,7 +109,8 @@ std::vector<double> moved_edges(const core::WallScan& scan,
     const double offset = (scan.illumination_point(pair) - scan.sensing_point(pair)).norm();
     std::vector<double> edges(static_cast<std::size_t>(axis.num_bins) + 1);
     for (std::size_t bin = 0; bin < edges.size(); ++bin) {
-        const double opl = axis.bin_begin_m(static_cast<double>(bin)) - scan.device_legs_m(pair);
+        const double opl =
+            axis.bin_begin_m(static_cast<double>(bin)) - scan.device_segments_m(pair);
         edges[bin] = opl > offset ? std::sqrt((opl - offset) * (opl + offset)) : 0.0;
     }
     return edges;
@@ -136,11 +137,11 @@ core::BinRange take_means(const std::vector<double>& seen, std::span<float> sums
     return best;
 }
 
-/// Adds the share of each bin that lies between two lengths.
-void add_shares(const std::vector<double>& edges,
-                double begin,
-                double end,
-                std::vector<double>& to) {
+/// Adds the fraction of each bin that lies between two lengths.
+void add_fractions(const std::vector<double>& edges,
+                   double begin,
+                   double end,
+                   std::vector<double>& to) {
     for (std::size_t bin = 0; bin < to.size(); ++bin) {
         const double overlap = std::min(end, edges[bin + 1]) - std::max(begin, edges[bin]);
         to[bin] += std::max(0.0, overlap) / (edges[bin + 1] - edges[bin]);
@@ -159,21 +160,21 @@ void fill_means(const PreparedCapture& from,
     core::parallel_for(grid.pairs.size(), [&](std::size_t point) {
         const auto sum = means.histogram(point);
         const std::vector<std::size_t>& pairs = grid.pairs[point];
-        const double share = from.observed ? 1.0 : 1.0 / static_cast<double>(pairs.size());
-        const std::vector<double> shares(from.transient().num_bins(), share);
+        const double fraction = from.observed ? 1.0 : 1.0 / static_cast<double>(pairs.size());
+        const std::vector<double> fractions(from.transient().num_bins(), fraction);
         std::vector<float> moved(num_bins);
         std::vector<double> seen(num_bins);
         for (const std::size_t pair : pairs) {
             const std::vector<double> pair_edges = moved_edges(from.scan, from.time_axis, pair);
-            ConservativeResampling(pair_edges, edges, shares)
+            ConservativeResampling(pair_edges, edges, fractions)
                 .apply(from.transient().histogram(pair).data(), moved.data());
             for (std::size_t bin = 0; bin < num_bins; ++bin) sum[bin] += moved[bin];
             if (!from.observed) continue;
             const core::BinRange& range = (*from.observed)[pair];
-            add_shares(edges,
-                       pair_edges[static_cast<std::size_t>(range.begin)],
-                       pair_edges[static_cast<std::size_t>(range.end)],
-                       seen);
+            add_fractions(edges,
+                          pair_edges[static_cast<std::size_t>(range.begin)],
+                          pair_edges[static_cast<std::size_t>(range.end)],
+                          seen);
         }
         if (from.observed) (*seen_bins)[point] = take_means(seen, sum);
     });

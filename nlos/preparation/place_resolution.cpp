@@ -15,7 +15,7 @@
 namespace nlos {
 namespace {
 
-/// Half the path length, device legs taken off, that half of all light comes before.
+/// Half the path length, device segments taken off, that half of all light comes before.
 std::optional<double> middle_range_m(const PreparedCapture& prepared) {
     const auto signal = find_signal(prepared.transient(), prepared.observed, prepared.unit);
     std::vector<double> light =
@@ -26,7 +26,7 @@ std::optional<double> middle_range_m(const PreparedCapture& prepared) {
     const double all = light.empty() ? 0.0 : *std::ranges::max_element(light);
     if (!(all > 0.0)) return std::nullopt;
     const auto found = std::ranges::find_if(light, [&](double sum) { return sum >= 0.5 * all; });
-    const auto [shortest, longest] = core::device_leg_range_m(prepared.scan);
+    const auto [shortest, longest] = core::device_segment_range_m(prepared.scan);
     const double length =
         prepared.time_axis.bin_center_m(static_cast<double>(found - light.begin()));
     return 0.5 * (length - 0.5 * (shortest + longest));

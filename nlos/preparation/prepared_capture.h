@@ -41,10 +41,10 @@ void drop_unobserved_ends(PreparedCapture& prepared);
 
 /// Turns a single or exhaustive measurement into the confocal one it resembles (normal moveout):
 /// the path l -> p -> s of length tau becomes the path m -> p -> m of length sqrt(tau^2 - |l -
-/// s|^2) at the midpoint m = (l + s) / 2, exact for points p equally far from l and s. Device legs
-/// are taken off; pairs that share a midpoint are averaged, those alone that observed a bin where
-/// not all did. Of a midpoint, the longest run of bins counts as observed that its pairs observed
-/// half or more of.
+/// s|^2) at the midpoint m = (l + s) / 2, exact for points p equally far from l and s. Device
+/// segments are taken off; pairs that share a midpoint are averaged, those alone that observed a
+/// bin where not all did. Of a midpoint, the longest run of bins counts as observed that its pairs
+/// observed half or more of.
 ///
 /// prepared  a single-laser scan becomes one of half the pitch and aperture
 /// returns   false when its midpoints do not fill an even grid; `prepared` is then unchanged

@@ -36,11 +36,11 @@ double farthest_m(const ScatterCells& cells) {
 }
 
 /// Ways between a point of the wall and all cells, in the unit of `positions`.
-struct Legs {
+struct PathSegments {
     Eigen::ArrayXf length;
     Eigen::ArrayXf weight;  ///< cosine with the wall's normal over the squared length
 
-    Legs(const Eigen::ArrayX3f& positions, const Vec3& point, const Vec3& normal)
+    PathSegments(const Eigen::ArrayX3f& positions, const Vec3& point, const Vec3& normal)
         : length(positions.rows()), weight(positions.rows()) {
         const Eigen::Vector3f from = point.cast<float>();
         const Eigen::Vector3f up = normal.cast<float>();
@@ -151,22 +151,22 @@ void ScatterTransport::fill(std::size_t pair,
                             const Eigen::ArrayX3f& positions,
                             Eigen::ArrayXf& reach) {
     const Vec3 normal = geometry.world_from_wall.linear().col(2);
-    const Legs out(positions, geometry.illumination[pair] / unit_m_, normal);
-    std::optional<Legs> other;
+    const PathSegments out(positions, geometry.illumination[pair] / unit_m_, normal);
+    std::optional<PathSegments> other;
     if (geometry.illumination[pair] != geometry.sensing[pair]) {
         other.emplace(positions, geometry.sensing[pair] / unit_m_, normal);
     }
-    const Legs& back = other ? *other : out;
+    const PathSegments& back = other ? *other : out;
     const auto before =
-        static_cast<float>((geometry.legs_m[pair] - geometry.opl_start_m) / unit_m_);
+        static_cast<float>((geometry.segments_m[pair] - geometry.opl_start_m) / unit_m_);
     const auto per_bin = static_cast<float>(unit_m_ / geometry.bin_width_m);
     const auto last = static_cast<float>(num_bins_ - 1);
     // Where each cell's light falls; that outside the sample has no weight.
-    Eigen::ArrayXf places = (out.length + back.length + before) * per_bin - 0.5F;
+    Eigen::ArrayXf bin_positions = (out.length + back.length + before) * per_bin - 0.5F;
     Eigen::ArrayXf weights = out.weight * back.weight;
-    weights = (places >= 0.0F && places < last).select(weights, 0.0F);
-    places = (places >= 0.0F && places < last).select(places, 0.0F);
-    add_reach(pair, places, weights, reach);
+    weights = (bin_positions >= 0.0F && bin_positions < last).select(weights, 0.0F);
+    bin_positions = (bin_positions >= 0.0F && bin_positions < last).select(bin_positions, 0.0F);
+    add_reach(pair, bin_positions, weights, reach);
     const auto arrivals = std::make_unique_for_overwrite<Arrival[]>(num_cells_);
     std::vector<std::size_t>& starts = block_starts_[pair];
     std::size_t count = 0;
@@ -175,7 +175,7 @@ void ScatterTransport::fill(std::size_t pair,
         const std::size_t end = std::min(begin + kBlock, num_cells_);
         for (std::size_t cell = begin; cell < end; ++cell) {
             const auto i = static_cast<Eigen::Index>(cell);
-            arrivals[count] = {static_cast<std::uint32_t>(cell), places[i], weights[i]};
+            arrivals[count] = {static_cast<std::uint32_t>(cell), bin_positions[i], weights[i]};
             count += weights[i] > 0.0F ? 1 : 0;  // the next one takes its place unless it counts
         }
     }
@@ -184,7 +184,7 @@ void ScatterTransport::fill(std::size_t pair,
 }
 
 void ScatterTransport::add_reach(std::size_t pair,
-                                 const Eigen::ArrayXf& places,
+                                 const Eigen::ArrayXf& bin_positions,
                                  const Eigen::ArrayXf& weights,
                                  Eigen::ArrayXf& reach) const {
     const auto observed = std::span(observed_).subspan(pair * num_bins_, num_bins_);
@@ -193,8 +193,8 @@ void ScatterTransport::add_reach(std::size_t pair,
         return;
     }
     for (Eigen::Index i = 0; i < reach.size(); ++i) {
-        const auto bin = static_cast<std::size_t>(places[i]);
-        const float late = places[i] - static_cast<float>(bin);
+        const auto bin = static_cast<std::size_t>(bin_positions[i]);
+        const float late = bin_positions[i] - static_cast<float>(bin);
         reach[i] += weights[i] * ((1.0F - late) * observed[bin] + late * observed[bin + 1]);
     }
 }

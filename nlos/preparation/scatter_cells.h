@@ -13,7 +13,7 @@ namespace nlos {
 struct PathGeometry {
     std::vector<core::Vec3> illumination;  ///< point of each pair [m]
     std::vector<core::Vec3> sensing;       ///< point of each pair [m]
-    std::vector<double> legs_m;            ///< length of the device legs in each pair's axis
+    std::vector<double> segments_m;        ///< length of the device segments in each pair's axis
     core::Transform world_from_wall = core::Transform::Identity();  ///< z towards the hidden side
     double opl_start_m = 0.0;                                       ///< of the sample's bin 0
     double bin_width_m = 0.0;  ///< of the sample; negative: time runs backwards
@@ -50,8 +50,8 @@ struct PairSubset {
 };
 
 /// How light of cells reaches the bins of a sample: a weight and a position between two bins for
-/// each pair and each cell that it sees within them. Light falls with the squares of both legs and
-/// with the cosines at the wall.
+/// each pair and each cell that it sees within them. Light falls with the squares of both segments
+/// and with the cosines at the wall.
 class ScatterTransport {
  public:
     ScatterTransport(const HistogramSample& sample,
@@ -75,7 +75,7 @@ class ScatterTransport {
     /// Light of a cell that reaches the sample's bins.
     struct Arrival {
         std::uint32_t cell;
-        float position;  ///< the bin, and the share of the light that falls into the next one
+        float position;  ///< the bin, and the fraction of the light that falls into the next one
         float weight;
 
         int bin() const { return static_cast<int>(position); }
@@ -88,7 +88,7 @@ class ScatterTransport {
               Eigen::ArrayXf& reach);
 
     void add_reach(std::size_t pair,
-                   const Eigen::ArrayXf& places,
+                   const Eigen::ArrayXf& bin_positions,
                    const Eigen::ArrayXf& weights,
                    Eigen::ArrayXf& reach) const;
 

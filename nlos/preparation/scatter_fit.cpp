@@ -104,19 +104,19 @@ class FitData {
     double stray_;
 };
 
-/// The ranges between which the sample's light lies, device legs taken off.
+/// The ranges between which the sample's light lies, device segments taken off.
 std::array<double, 2> range_limits(const HistogramSample& sample, const PathGeometry& geometry) {
-    double legs_m = 0.0;
+    double segments_m = 0.0;
     Vec3 apart = Vec3::Zero();
     for (std::size_t i = 0; i < sample.pairs.size(); ++i) {
-        const double share = 1.0 / static_cast<double>(sample.pairs.size());
-        legs_m += share * geometry.legs_m[i];
-        apart += share * (geometry.illumination[i] - geometry.sensing[i]);
+        const double fraction = 1.0 / static_cast<double>(sample.pairs.size());
+        segments_m += fraction * geometry.segments_m[i];
+        apart += fraction * (geometry.illumination[i] - geometry.sensing[i]);
     }
     const double end_m =
         geometry.opl_start_m + geometry.bin_width_m * static_cast<double>(sample.num_bins);
-    const double low = 0.5 * (std::min(geometry.opl_start_m, end_m) - legs_m - apart.norm());
-    const double high = 0.5 * (std::max(geometry.opl_start_m, end_m) - legs_m + apart.norm());
+    const double low = 0.5 * (std::min(geometry.opl_start_m, end_m) - segments_m - apart.norm());
+    const double high = 0.5 * (std::max(geometry.opl_start_m, end_m) - segments_m + apart.norm());
     return {std::max(low, kNearest * high), high};
 }
 
@@ -190,12 +190,12 @@ void ScatterFit::fit(bool is_last) {
     const ScatterTransport transport(*sample_, geometry_, cells_);
     fit_light(*sample_, data, transport, cells_);
     if (!is_last) return;
-    const double share =
+    const double fraction =
         data.misfit(transport.forward(cells_.light, {})) / std::max(data.misfit_of_mean(), 1e-30);
-    if (std::isfinite(share)) unexplained_ = std::max(0.0, share);
+    if (std::isfinite(fraction)) unexplained_ = std::max(0.0, fraction);
 }
 
-double unexplained_share(const HistogramSample& sample, const PathGeometry& geometry) {
+double unexplained_fraction(const HistogramSample& sample, const PathGeometry& geometry) {
     return ScatterFit(sample, geometry, ScatterFit::kRefinements).unexplained();
 }
 

@@ -23,11 +23,11 @@ class ScatterFit {
 
     void refine();
 
-    /// The share of the sample's structure that is left over: squares in units of the variance that
-    /// Poisson noise and a model right to a tenth have, without the noise that counts have, over
-    /// what the mean histogram, scaled to each pair, leaves. 0 is a perfect explanation, and above
-    /// 1 the geometry explains less than no geometry does; 1 where all lengths would lie behind the
-    /// wall.
+    /// The fraction of the sample's structure that is left over: squares in units of the variance
+    /// that Poisson noise and a model right to a tenth have, without the noise that counts have,
+    /// over what the mean histogram, scaled to each pair, leaves. 0 is a perfect explanation, and
+    /// above 1 the geometry explains less than no geometry does; 1 where all lengths would lie
+    /// behind the wall.
     double unexplained() const { return unexplained_; }
 
  private:
@@ -41,7 +41,7 @@ class ScatterFit {
 };
 
 /// What no hidden scene explains of a sample under a geometry: that of a fit refined to the end.
-double unexplained_share(const HistogramSample& sample, const PathGeometry& geometry);
+double unexplained_fraction(const HistogramSample& sample, const PathGeometry& geometry);
 
 /// Whether histograms differ from each other beyond noise; else all geometries explain them alike.
 bool has_structure(const HistogramSample& sample);

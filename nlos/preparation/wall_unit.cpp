@@ -9,7 +9,7 @@
 
 namespace nlos {
 
-std::optional<std::string> wall_unit_slip(const core::Capture& capture) {
+std::optional<std::string> wall_unit_mistake(const core::Capture& capture) {
     constexpr double kFarthest = 10.0;  // extent of the wall over the longest path
     constexpr double kLargest_m = 5.0;  // below that, bins may as well be too narrow
     constexpr double kUsual = 0.5;

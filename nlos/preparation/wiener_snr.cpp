@@ -33,13 +33,13 @@ double wiener_snr(const core::WallScan& scan,
     const double power = falloff_power(falloff);
     const int merge = plan.merge_bins;
     const auto powers_of = [&](std::size_t pair) {
-        const double legs_m = scan.device_legs_m(pair);
+        const double segments_m = scan.device_segments_m(pair);
         const double ambient = plan.ambient_per_bin.empty() ? 0.0 : plan.ambient_per_bin[pair];
         const auto histogram = counts.histogram(pair);
         Powers powers;
         const core::BinRange observed = plan.prepared_range(pair);
         for (int bin = observed.begin; bin < observed.end; ++bin) {
-            const double range = 0.5 * (axis.bin_begin_m((bin + 0.5) * merge) - legs_m);
+            const double range = 0.5 * (axis.bin_begin_m((bin + 0.5) * merge) - segments_m);
             if (range <= 0.0) continue;
             double count = 0.0;
             for (int i = bin * merge; i < (bin + 1) * merge; ++i) {

@@ -14,7 +14,7 @@
 namespace nlos {
 namespace {
 
-constexpr double kOwnShare = 0.8;          // of a depth's distance from its plane
+constexpr double kOwnFraction = 0.8;       // of a depth's distance from its plane
 constexpr std::size_t kPlaneReach = 2;     // columns on either side
 constexpr double kFewestForPlane = 6.0;    // columns
 constexpr double kUnknownRoughness = 3.0;  // voxels, where there are fewer
@@ -132,7 +132,7 @@ std::vector<double> depth_sigmas(const Volume& volume,
                 return std::min(off_m[j], kRoughest * step_m);
             });
             sigmas[i] = std::hypot(step_m * sure * std::hypot(1.0, errors.doubt * odds_against),
-                                   kOwnShare * off_m[i],
+                                   kOwnFraction * off_m[i],
                                    errors.near_fraction * rough_m.value());
         }
     }

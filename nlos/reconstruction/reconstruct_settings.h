@@ -70,7 +70,7 @@ struct SolverSettings {
     std::optional<double> tv;           ///< weight of total variation; empty: by the light
     std::optional<double> sparsity;     ///< weight of the sum; empty: a tenth of `tv`
     std::optional<double> spot_m;       ///< full width at half maximum of the spot on the wall;
-                                        ///< empty: as the capture states, else 0
+                                        ///< empty: as the capture gives, else 0
     bool gains = false;                 ///< finds a factor of every pair, see PairGains
     std::optional<double> tolerance;    ///< empty: by the solver
     std::optional<int> max_iterations;  ///< empty: by the solver
@@ -146,7 +146,7 @@ void for_each_field(SolverSettings& s, Visitor&& visit) {
           s.spot_m,
           core::at_least(0,
                          "full width at half maximum of the spot on the wall [m]; null: as the "
-                         "capture states, else 0"));
+                         "capture gives, else 0"));
     visit(
         "gains",
         s.gains,
@@ -158,7 +158,7 @@ void for_each_field(SolverSettings& s, Visitor&& visit) {
                                  1,
                                  "relative change of the result at which iterations stop; null: "
                                  "0.015 for confocal grids (0.001 where spot and response are "
-                                 "wide), times the root of the share of their points that were "
+                                 "wide), times the root of the fraction of their points that were "
                                  "observed; else 0.01"));
     visit("max_iterations",
           s.max_iterations,

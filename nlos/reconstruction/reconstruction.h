@@ -17,7 +17,7 @@ namespace nlos {
 struct Reconstruction {
     Volume volume;
     core::DepthMap depth;  ///< sub-bin depth of each column's peak; NaN = background
-    std::vector<double> surface_probability;  ///< per column [x][y]; empty: not stated
+    std::vector<double> surface_probability;  ///< per column [x][y]; empty: not given
     std::vector<double> depth_sigma_m;  ///< of `depth`, NaN = background; empty: noise not known
     core::PointCloud points;  ///< foreground of `depth` in world coordinates, normals to the wall
     std::string method;       ///< the one that ran
@@ -27,7 +27,7 @@ struct Reconstruction {
     std::vector<std::string> warnings;  ///< what looks wrong about the capture
     core::BoxedJson provenance;         ///< who made it from what, as the caller says
     double seconds = 0.0;
-    double stated_bytes = 0.0;  ///< memory on top of the capture, announced before the run
+    double estimated_bytes = 0.0;  ///< memory on top of the capture, announced before the run
     std::uint64_t peak_bytes = 0;
 };
 

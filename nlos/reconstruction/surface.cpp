@@ -94,11 +94,11 @@ std::vector<ColumnPeak> find_peaks(const Volume& volume, const std::optional<Vol
     return peaks;
 }
 
-/// The first peak before a voxel that has a share of its brightness, and after which brightness
+/// The first peak before a voxel that has a fraction of its brightness, and after which brightness
 /// falls to half, so that it is no part of the same peak; else the voxel.
-std::size_t front_voxel(std::span<const float> column, std::size_t voxel, double share) {
+std::size_t front_voxel(std::span<const float> column, std::size_t voxel, double fraction) {
     constexpr float kDip = 0.5F;
-    const auto least = static_cast<float>(share * column[voxel]);
+    const auto least = static_cast<float>(fraction * column[voxel]);
     std::size_t highest = 0;
     while (highest < voxel && column[highest] < least) ++highest;
     for (std::size_t i = highest; i < voxel; ++i) {
@@ -112,7 +112,7 @@ std::size_t front_voxel(std::span<const float> column, std::size_t voxel, double
 /// dimmest of these and noise does not explain it.
 void come_to_front(const Volume& volume,
                    const std::optional<VolumeNoise>& noise,
-                   double share,
+                   double fraction,
                    const std::vector<std::size_t>& foreground,
                    std::vector<ColumnPeak>& peaks) {
     const std::size_t nz = volume.axes.z_m.size();
@@ -125,7 +125,7 @@ void come_to_front(const Volume& volume,
         dimmest = std::min(dimmest, brightness_of(column_of(i)[peaks[i].voxel]));
     }
     for (const std::size_t i : foreground) {
-        const std::size_t front = front_voxel(column_of(i), peaks[i].voxel, share);
+        const std::size_t front = front_voxel(column_of(i), peaks[i].voxel, fraction);
         const double brightness = brightness_of(column_of(i)[front]);
         if (brightness < dimmest) continue;
         if (noise && noise->significance(brightness, front) < significance) continue;

@@ -26,7 +26,7 @@ struct VolumeErrors {
     double near_fraction = 0.0;   ///< of the neighbours' roughness
     PlateauFractions plateau = {};
     double steepest = 0.0;  ///< slope of surfaces whose light is spread over voxels of a column
-    double front = 0.0;     ///< share of a peak from which on one before it hides it; 0: never
+    double front = 0.0;     ///< fraction of a peak from which on one before it hides it; 0: never
 };
 
 /// Finds each column's peak, how likely it is a surface, and how well its depth is known.

@@ -55,9 +55,9 @@ struct SurfaceMean {
     double value() const { return weight_sum > 0.0 ? sum / weight_sum : 0.0; }
 };
 
-/// How far a peak stays behind a share of the mean; without end where it is none.
-double odds_against(double peak, double share_of_mean) {
-    return peak > 0.0 ? share_of_mean / peak : std::numeric_limits<double>::infinity();
+/// How far a peak stays behind a fraction of the mean; without end where it is none.
+double odds_against(double peak, double fraction_of_mean) {
+    return peak > 0.0 ? fraction_of_mean / peak : std::numeric_limits<double>::infinity();
 }
 
 /// Odds among neighbours, to the power of 12.
@@ -125,11 +125,11 @@ std::vector<double> false_discovery_rates(const std::vector<double>& p_values) {
 
     const auto count = static_cast<double>(p_values.size());
     const auto num_large = std::ranges::count_if(p_values, [](double p) { return p > 0.5; });
-    const double null_share = std::min(1.0, 2.0 * static_cast<double>(num_large + 1) / count);
+    const double null_fraction = std::min(1.0, 2.0 * static_cast<double>(num_large + 1) / count);
     std::vector<double> rates(p_values.size());
     std::size_t next = 0;
     for (const Stretch& stretch : falling_density(rising)) {
-        const double rate = std::min(1.0, null_share * count / stretch.density());
+        const double rate = std::min(1.0, null_fraction * count / stretch.density());
         const std::size_t end = next + static_cast<std::size_t>(stretch.count);
         while (next < end) rates[order[next++]] = rate;
     }

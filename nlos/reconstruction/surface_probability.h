@@ -7,12 +7,12 @@
 namespace nlos {
 
 /// Of many tests, the probability that each one's null hypothesis is true although its p-value is
-/// as small as it is: the share of true null hypotheses over the density of p-values, which falls
-/// with p.
+/// as small as it is: the fraction of true null hypotheses over the density of p-values, which
+/// falls with p.
 ///
 /// p_values   uniform where the null hypothesis holds, or larger
 /// returns    as many values in [0, 1], rising with p
-/// source     local false discovery rate [Efron2001], falling density [Grenander1956], share of
+/// source     local false discovery rate [Efron2001], falling density [Grenander1956], fraction of
 ///            true null hypotheses [Storey2002]
 std::vector<double> false_discovery_rates(const std::vector<double>& p_values);
 
@@ -27,10 +27,10 @@ struct PlateauFractions {
 ///
 /// Across a blurred edge brightness falls within a column or two; where a surface turns away, or is
 /// dim, it falls slowly. So a column is held against the mean brightness of the surfaces around it,
-/// and, less strictly, against that of all. The odds are the ratio to a share of the one to the
+/// and, less strictly, against that of all. The odds are the ratio to a fraction of the one to the
 /// power of 12, and of the other to a power of its own; the probabilities of both are multiplied.
-/// Means are weighted by brightness and the square of the probability itself. Shares and powers fit
-/// simulated scenes.
+/// Means are weighted by brightness and the square of the probability itself. Fractions and powers
+/// fit simulated scenes.
 ///
 /// peaks     brightness of each column of a grid (x, y), not negative
 /// weights   in [0, 1]: the probability that it is more than noise

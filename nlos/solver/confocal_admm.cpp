@@ -36,12 +36,12 @@ constexpr double kAlbedoPenalty = 3.0;    // nu
 constexpr float kRelaxation = 1.9F;       // of f and h away from their splits
 constexpr int kGainInterval = 5;          // iterations from one update of gains or background
 
-constexpr double kSparsityShare = 0.1;  // of the weight of total variation, unless set
+constexpr double kSparsityFraction = 0.1;  // of the weight of total variation, unless set
 
-// Reweighted sparsity. What a voxel of an empty column costs is a share of what would hold back one
-// as bright as the brightest, were it alone: so it does not depend on how many photons there are.
-// Where the model leaves more of the data unexplained than noise, total variation weighs as for
-// noise as large: else surfaces that do not quite face the wall fall apart.
+// Reweighted sparsity. What a voxel of an empty column costs is a fraction of what would hold back
+// one as bright as the brightest, were it alone: so it does not depend on how many photons there
+// are. Where the model leaves more of the data unexplained than noise, total variation weighs as
+// for noise as large: else surfaces that do not quite face the wall fall apart.
 constexpr double kEmptyCost = 0.04;
 constexpr double kHalfCost = 0.1;      // of the brightest: such a column costs half
 constexpr int kReweightInterval = 50;  // iterations
@@ -89,7 +89,7 @@ ConfocalAdmm::ConfocalAdmm(const MethodInput& input,
     time_.factorize(data.precision);
     for (ConeField& u : u_) u.resize(right_.size());
     for (ConeField& b : b_) b.resize(right_.size());
-    const double sparsity = settings.sparsity.value_or(kSparsityShare * weight_);
+    const double sparsity = settings.sparsity.value_or(kSparsityFraction * weight_);
     for (const double noise : voxel_noise(data, *input.wall.grid)) {
         tv_.push_back(static_cast<float>(weight_ * noise / kGradientPenalty));
         const double cost = costs_.empty() ? sparsity * noise : kEmptyCost * noise * noise;
@@ -100,7 +100,7 @@ ConfocalAdmm::ConfocalAdmm(const MethodInput& input,
 int ConfocalAdmm::run(const core::Progress& progress, std::optional<int> at_most) {
     const int max_iterations = at_most.value_or(max_iterations_);
     split_data(true);
-    double share = 0.0;
+    double fraction = 0.0;
     for (int i = 1; i <= max_iterations; ++i) {
         check_stop(progress);
         convolution_.solve(light_, right_);
@@ -109,11 +109,11 @@ int ConfocalAdmm::run(const core::Progress& progress, std::optional<int> at_most
         split_data(false);
         const Change change = split_field();
         if (!costs_.empty() && i % kReweightInterval == 0 && i <= kReweightUntil) reweight();
-        // The change may grow for a while, the share done may not.
-        share = std::max({share,
-                          static_cast<double>(i) / max_iterations,
-                          std::min(1.0, std::log(change.relative()) / std::log(tolerance_))});
-        progress.update(0.95 * share, fmt::format("change {:.2g}", change.relative()));
+        // The change may grow for a while, the fraction done may not.
+        fraction = std::max({fraction,
+                             static_cast<double>(i) / max_iterations,
+                             std::min(1.0, std::log(change.relative()) / std::log(tolerance_))});
+        progress.update(0.95 * fraction, fmt::format("change {:.2g}", change.relative()));
         if (change.relative() <= tolerance_) return i;
     }
     return max_iterations;

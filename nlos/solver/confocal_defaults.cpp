@@ -25,8 +25,8 @@ constexpr double kSmearedTolerance = -2.0;
 constexpr double kToleranceOfGrids = 0.015;
 constexpr double kToleranceUnderSpot = 0.001;
 
-/// Share of the wall points that were observed at all.
-double observed_share(const ConfocalProblem& data) {
+/// Fraction of the wall points that were observed at all.
+double observed_fraction(const ConfocalProblem& data) {
     const auto num_seen = std::ranges::count_if(
         data.observed, [](const core::BinRange& seen) { return seen.size() > 0; });
     return static_cast<double>(num_seen) / static_cast<double>(data.observed.size());
@@ -37,7 +37,7 @@ double observed_share(const ConfocalProblem& data) {
 double default_weight(const ConfocalProblem& data) {
     const double smeared = data.is_confined ? std::pow(data.blur, kSmearedWeight) : 1.0;
     if (data.likelihood == Likelihood::Gaussian) {
-        return kGaussianWeight * smeared * std::pow(observed_share(data), -0.25);
+        return kGaussianWeight * smeared * std::pow(observed_fraction(data), -0.25);
     }
     const double photons = std::max(kFewest, data.photons_per_point);
     return kPoissonWeight * smeared * std::pow(std::max(1.0, kPlenty / photons), 0.25);
@@ -46,29 +46,29 @@ double default_weight(const ConfocalProblem& data) {
 double default_tolerance(const ConfocalProblem& data) {
     const double smeared = data.is_confined ? std::pow(data.blur, kSmearedTolerance) : 1.0;
     const double full = data.is_under_spot ? kToleranceUnderSpot : kToleranceOfGrids * smeared;
-    return full * std::sqrt(observed_share(data));
+    return full * std::sqrt(observed_fraction(data));
 }
 
 std::vector<double> voxel_noise(const ConfocalProblem& data, const WallGrid& grid) {
     const ConeKernel kernel(data.cone, grid);
     const std::size_t num_v = data.cone.num_v();
-    std::vector<double> share(num_v + 1, 0.0);  // of K's square, per shift from u to v
+    std::vector<double> fraction(num_v + 1, 0.0);  // of K's square, per shift from u to v
     for (std::size_t ix = 0; ix < kernel.qx(); ++ix) {
         for (std::size_t iy = 0; iy < kernel.qy(); ++iy) {
             const ConeEntry& entry = kernel.entry(ix, iy);
-            share[entry.shift] += std::pow(static_cast<double>(entry.here), 2);
-            share[entry.shift + 1] += std::pow(static_cast<double>(entry.next), 2);
+            fraction[entry.shift] += std::pow(static_cast<double>(entry.here), 2);
+            fraction[entry.shift + 1] += std::pow(static_cast<double>(entry.next), 2);
         }
     }
     const std::vector<double> light = data.time.normal_diagonal(data.precision);
-    const double observed = observed_share(data);
+    const double observed = observed_fraction(data);
     std::vector<double> noise(num_v);
     for (std::size_t u = 0; u < num_v; ++u) {
         double sum = 0.0;
         double weights = 0.0;
         for (std::size_t shift = 0; u + shift < num_v; ++shift) {
-            sum += share[shift] * light[u + shift];
-            weights += share[shift];
+            sum += fraction[shift] * light[u + shift];
+            weights += fraction[shift];
         }
         noise[u] = weights > 0.0 ? std::sqrt(observed * sum / weights) : 0.0;
     }

@@ -27,15 +27,15 @@ constexpr double kWideSpot = 2.4;  // full width at half maximum, in distances o
 class WallHistograms {
  public:
     WallHistograms(const MethodInput& input)
-        : input_(input), shortest_leg_m_(core::device_leg_range_m(input.scan)[0]) {}
+        : input_(input), shortest_segment_m_(core::device_segment_range_m(input.scan)[0]) {}
 
     core::TimeAxis axis() const {
         core::TimeAxis axis = input_.time_axis;
-        axis.opl_start_m -= shortest_leg_m_;
+        axis.opl_start_m -= shortest_segment_m_;
         return axis;
     }
 
-    /// Calls visit(bin, value) for every observed bin of a point; device legs that are no whole
+    /// Calls visit(bin, value) for every observed bin of a point; device segments that are no whole
     /// number of bins longer than the shortest split a value between two.
     template <class Visit>
     void visit(std::size_t pair, const Visit& visit) const {
@@ -66,15 +66,15 @@ class WallHistograms {
         float late;
     };
     Shift shift(std::size_t pair) const {
-        const double bins =
-            (input_.scan.device_legs_m(pair) - shortest_leg_m_) / input_.time_axis.bin_width_m;
+        const double bins = (input_.scan.device_segments_m(pair) - shortest_segment_m_) /
+                            input_.time_axis.bin_width_m;
         const double whole = std::floor(bins + 1e-3);
         const double late = bins - whole;
         return {static_cast<int>(whole), late > 1e-3 ? static_cast<float>(late) : 0.0F};
     }
 
     const MethodInput& input_;
-    double shortest_leg_m_;
+    double shortest_segment_m_;
 };
 
 /// Light of all points per bin of their common axis.
@@ -191,7 +191,7 @@ double photons_per_point(const TotalLight& total,
 
 /// Standard deviation of light times range^power, from what interpolation between the nearest
 /// observed points along y leaves: what no smooth scene explains. Light of a scene leaves the more,
-/// the farther apart they are: a share in inverse proportion is what neighbours would have left.
+/// the farther apart they are: a fraction in inverse proportion is what neighbours would have left.
 /// Noise does not, and is taken for less than it is where few points were observed.
 double interpolation_noise(const ConfocalProblem& data, double power) {
     const std::size_t ny = data.cone.ny;
@@ -219,12 +219,12 @@ double interpolation_noise(const ConfocalProblem& data, double power) {
                 const auto before = static_cast<double>(seen[i] - seen[i - 1]);
                 const auto behind = static_cast<double>(seen[i + 1] - seen[i]);
                 if (std::max(before, behind) > kFarthestNeighbour) continue;
-                const double share = before / (before + behind);  // of the point behind
+                const double fraction = before / (before + behind);  // of the point behind
                 const double expected =
-                    (1.0 - share) * light(seen[i - 1]) + share * light(seen[i + 1]);
+                    (1.0 - fraction) * light(seen[i - 1]) + fraction * light(seen[i + 1]);
                 const double distance = 0.5 * (before + behind);
                 sum += std::pow((light(seen[i]) - expected) / distance, 2) /
-                       (1.0 + share * share + (1.0 - share) * (1.0 - share));
+                       (1.0 + fraction * fraction + (1.0 - fraction) * (1.0 - fraction));
                 count += 1.0;
             }
         }

@@ -28,7 +28,7 @@ struct ConfocalProblem {
     double unit = 1.0;  ///< that unit, as content of a bin of v times range^power
     double photons_per_point = 0.0;  ///< of light, had it no background, that were as well known
     bool is_confined = false;        ///< all scatterers lie before the wall's footprint
-    bool finds_background = false;   ///< so, and none was stated
+    bool finds_background = false;   ///< so, and none was given
     bool is_under_spot = false;      ///< so, and a spot blurs light over wall points
     double blur = 1.0;               ///< depth_blur(), at least 1
 };
@@ -40,9 +40,9 @@ double num_observed_bins(const ConfocalProblem& data);
 /// 0 without one.
 double depth_blur(const MethodInput& input);
 
-/// Cuts the bins with light out of a capture, takes device legs off and weighs what is left.
+/// Cuts the bins with light out of a capture, takes device segments off and weighs what is left.
 ///
-/// Where device legs differ by no whole number of bins, a bin is split between two.
+/// Where device segments differ by no whole number of bins, a bin is split between two.
 ///
 /// is_confined   whether all scatterers lie before the wall's footprint, and the model tells all
 ///               of their light

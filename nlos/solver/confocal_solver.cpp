@@ -15,7 +15,7 @@ namespace {
 // Of the choice between falloffs.
 constexpr int kTrialIterations = 20;
 constexpr double kFewCounts = 5.0;      // in the bins that hold most of the light
-constexpr double kClearlyBetter = 0.8;  // share of the misfit
+constexpr double kClearlyBetter = 0.8;  // fraction of the misfit
 constexpr double kMuchBlur = 1.0;       // of depth: cosines left out look like surfaces
 
 bool is_much_smeared(const MethodInput& input) {

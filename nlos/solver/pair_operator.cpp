@@ -24,7 +24,7 @@ std::vector<Eigen::Vector3f> to_wall_frame(const core::Transform& world_from_wal
 }  // namespace
 
 /// Where a chunk of voxels adds to one histogram, and how much.
-struct PairOperator::Legs {
+struct PairOperator::Segments {
     std::vector<float> positions = std::vector<float>(kVoxelsPerChunk);  ///< 1: centre of bin 0
     std::vector<float> slopes = std::vector<float>(kVoxelsPerChunk);     ///< for spots
     std::vector<float> factors = std::vector<float>(kVoxelsPerChunk);
@@ -51,8 +51,8 @@ PairOperator::PairOperator(const MethodInput& input, Falloff falloff, double spo
     for (std::size_t pair = 0; pair < scan_.num_pairs(); ++pair) {
         observed_.push_back(input.observed ? (*input.observed)[pair]
                                            : core::BinRange{0, axis_.num_bins});
-        device_legs_bins_.push_back(
-            static_cast<float>(scan_.device_legs_m(pair) / axis_.bin_width_m));
+        device_segments_bins_.push_back(
+            static_cast<float>(scan_.device_segments_m(pair) / axis_.bin_width_m));
     }
 }
 
@@ -68,23 +68,23 @@ void PairOperator::set_voxels(std::vector<Eigen::Vector3f> positions) {
 }
 
 // Divisions and square roots take most of the time of forward() and adjoint(): as few as possible.
-void PairOperator::fill_legs(std::size_t pair,
-                             std::size_t begin,
-                             std::size_t end,
-                             Legs& legs) const {
+void PairOperator::fill_segments(std::size_t pair,
+                                 std::size_t begin,
+                                 std::size_t end,
+                                 Segments& segments) const {
     const Eigen::Vector3f l = illumination_[scan_.illumination_index(pair)];
     const Eigen::Vector3f s = sensing_[scan_.sensing_index(pair)];
     const auto per_bin = static_cast<float>(1.0 / axis_.bin_width_m);
     // Half a bin behind the axis's start.
-    const float offset =
-        device_legs_bins_[pair] + 0.5F - static_cast<float>(axis_.opl_start_m / axis_.bin_width_m);
+    const float offset = device_segments_bins_[pair] + 0.5F -
+                         static_cast<float>(axis_.opl_start_m / axis_.bin_width_m);
     const float gain = gains_[pair];
     const float* __restrict x = x_.data() + begin;
     const float* __restrict y = y_.data() + begin;
     const float* __restrict z = z_.data() + begin;
-    float* __restrict positions = legs.positions.data();
-    float* __restrict factors = legs.factors.data();
-    // product: of both legs; inverse: of its square; heights: product of the heights
+    float* __restrict positions = segments.positions.data();
+    float* __restrict factors = segments.factors.data();
+    // product: of both segments; inverse: of its square; heights: product of the heights
     const auto fill = [&](const auto& factor_of) {
         for (std::size_t i = 0; i < end - begin; ++i) {
             const float lx = x[i] - l.x(), ly = y[i] - l.y(), lz = z[i] - l.z();
@@ -107,7 +107,7 @@ void PairOperator::fill_legs(std::size_t pair,
     }
     if (spot_.size() == 1) return;
     const float joint = scan_.pattern == core::ScanPattern::Confocal ? 2.0F : 0.0F;
-    float* __restrict slopes = legs.slopes.data();
+    float* __restrict slopes = segments.slopes.data();
     for (std::size_t i = 0; i < end - begin; ++i) {
         const float lx = x[i] - l.x(), ly = y[i] - l.y(), lz = z[i] - l.z();
         const float sx = x[i] - s.x(), sy = y[i] - s.y(), sz = z[i] - s.z();
@@ -118,12 +118,12 @@ void PairOperator::fill_legs(std::size_t pair,
     }
 }
 
-void PairOperator::place(const SpotPoint& point, std::size_t count, Legs& legs) const {
+void PairOperator::place(const SpotPoint& point, std::size_t count, Segments& segments) const {
     const auto last = static_cast<float>(num_bins_ + 1);
-    const float* __restrict positions = legs.positions.data();
-    const float* __restrict slopes = legs.slopes.data();
-    int* __restrict bins = legs.bins.data();
-    float* __restrict late = legs.late.data();
+    const float* __restrict positions = segments.positions.data();
+    const float* __restrict slopes = segments.slopes.data();
+    int* __restrict bins = segments.bins.data();
+    float* __restrict late = segments.late.data();
     for (std::size_t i = 0; i < count; ++i) {
         float position = positions[i] + point.shift_bins * slopes[i];
         position = position > 0.0F ? position : 0.0F;
@@ -163,20 +163,20 @@ void PairOperator::forward(std::span<const float> albedo,
                            std::span<const std::size_t> pairs,
                            std::span<float> histograms) const {
     core::parallel_blocks(pairs.size(), 4, [&](std::size_t begin, std::size_t end) {
-        Legs legs;
+        Segments segments;
         std::vector<float> padded(num_bins_ + 3);
         for (std::size_t i = begin; i < end; ++i) {
             std::ranges::fill(padded, 0.0F);
             for (std::size_t first = 0; first < num_voxels(); first += kVoxelsPerChunk) {
                 const std::size_t count = std::min(kVoxelsPerChunk, num_voxels() - first);
-                fill_legs(pairs[i], first, first + count, legs);
+                fill_segments(pairs[i], first, first + count, segments);
                 for (const SpotPoint& point : spot_) {
-                    place(point, count, legs);
+                    place(point, count, segments);
                     for (std::size_t v = 0; v < count; ++v) {
-                        const float value = point.weight * albedo[first + v] * legs.factors[v];
-                        const auto bin = static_cast<std::size_t>(legs.bins[v]);
-                        padded[bin] += (1.0F - legs.late[v]) * value;
-                        padded[bin + 1] += legs.late[v] * value;
+                        const float value = point.weight * albedo[first + v] * segments.factors[v];
+                        const auto bin = static_cast<std::size_t>(segments.bins[v]);
+                        padded[bin] += (1.0F - segments.late[v]) * value;
+                        padded[bin + 1] += segments.late[v] * value;
                     }
                 }
             }
@@ -203,18 +203,18 @@ void PairOperator::adjoint(std::span<const float> histograms,
         blur(seen, std::span<float>(padded).subspan(i * stride + 1, num_bins_), true);
     });
     core::parallel_blocks(num_voxels(), kVoxelsPerChunk, [&](std::size_t begin, std::size_t end) {
-        Legs legs;
+        Segments segments;
         float* __restrict sums = albedo.data() + begin;
         std::fill_n(sums, end - begin, 0.0F);
         for (std::size_t i = 0; i < pairs.size(); ++i) {
             const float* __restrict row = padded.data() + i * stride;
-            fill_legs(pairs[i], begin, end, legs);
+            fill_segments(pairs[i], begin, end, segments);
             for (const SpotPoint& point : spot_) {
-                place(point, end - begin, legs);
+                place(point, end - begin, segments);
                 for (std::size_t v = 0; v < end - begin; ++v) {
-                    const int bin = legs.bins[v];
-                    const float value = row[bin] + legs.late[v] * (row[bin + 1] - row[bin]);
-                    sums[v] += point.weight * legs.factors[v] * value;
+                    const int bin = segments.bins[v];
+                    const float value = row[bin] + segments.late[v] * (row[bin + 1] - row[bin]);
+                    sums[v] += point.weight * segments.factors[v] * value;
                 }
             }
         }

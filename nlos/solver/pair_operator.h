@@ -48,16 +48,19 @@ class PairOperator {
                  std::span<float> albedo) const;
 
  private:
-    struct Legs;
+    struct Segments;
     struct SpotPoint {
         float shift_bins;  ///< per unit of the path length's slope along the wall
         float weight;
     };
     void blur(std::span<const float> input, std::span<float> output, bool is_adjoint) const;
     /// What does not depend on the spot's point, for voxels [begin, end).
-    void fill_legs(std::size_t pair, std::size_t begin, std::size_t end, Legs& legs) const;
+    void fill_segments(std::size_t pair,
+                       std::size_t begin,
+                       std::size_t end,
+                       Segments& segments) const;
     /// What does.
-    void place(const SpotPoint& point, std::size_t count, Legs& legs) const;
+    void place(const SpotPoint& point, std::size_t count, Segments& segments) const;
 
     const core::WallScan& scan_;
     core::TimeAxis axis_;
@@ -68,7 +71,7 @@ class PairOperator {
     PairGains gains_;
     std::vector<core::BinRange> observed_;                 ///< per pair
     std::vector<Eigen::Vector3f> illumination_, sensing_;  ///< wall's frame
-    std::vector<float> device_legs_bins_;                  ///< per pair
+    std::vector<float> device_segments_bins_;              ///< per pair
     std::vector<float> x_, y_, z_;
 };
 

@@ -150,8 +150,8 @@ class PairSolver {
         const double least = kSmallestPairLight * *std::ranges::max_element(light);
         double end = static_cast<double>(light.size());
         while (end > 1.0 && light[static_cast<std::size_t>(end) - 1] <= least) end -= 1.0;
-        const double farthest =
-            0.5 * (input_.time_axis.bin_begin_m(end) - core::device_leg_range_m(input_.scan)[0]);
+        const double farthest = 0.5 * (input_.time_axis.bin_begin_m(end) -
+                                       core::device_segment_range_m(input_.scan)[0]);
         std::vector<std::size_t> voxels;
         for (std::size_t i = 0; i < input_.axes.num_voxels(); ++i) {
             if (input_.axes.z_m[i % size_[2]] <= farthest) voxels.push_back(i);
@@ -199,9 +199,9 @@ class PairSolver {
         }
         std::vector<float> gain(voxels_.size());
         light_.adjoint(expected, pairs, gain);
-        const auto share = 1.0F / static_cast<float>(num_subsets);
+        const auto fraction = 1.0F / static_cast<float>(num_subsets);
         for (std::size_t i = 0; i < gain.size(); ++i) {
-            const float cost = seen[i] + share * sparsity_weight(i);
+            const float cost = seen[i] + fraction * sparsity_weight(i);
             voxels_.albedo[i] *= cost > 0.0F ? gain[i] / cost : 0.0F;
         }
     }

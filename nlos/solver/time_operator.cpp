@@ -12,7 +12,7 @@ void add_scaled(float a, const float* __restrict x, float* __restrict y, std::si
     for (std::size_t i = 0; i < lanes; ++i) y[i] += a * x[i];
 }
 
-/// The share of each bin of v that falls into each bin of time, without a response, times the
+/// The fraction of each bin of v that falls into each bin of time, without a response, times the
 /// falloff: dense rows, one per bin of time and of `margin` more on both sides.
 std::vector<std::vector<double>> resampling_rows(const core::TimeAxis& axis,
                                                  int margin,

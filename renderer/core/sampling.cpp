@@ -32,7 +32,7 @@ DiscreteDistribution::DiscreteDistribution(std::span<const double> weights)
     }
     assert(sum_ > 0.0);
     for (double& value : cumulative_) value /= sum_;
-    // Trailing zero weights must keep an empty share although rounding lifts the end to 1.
+    // Trailing zero weights must keep an empty interval although rounding lifts the end to 1.
     for (std::size_t i = cumulative_.size();
          i-- > 0 && (i + 1 == cumulative_.size() || weights[i + 1] == 0.0);) {
         cumulative_[i] = 1.0;
@@ -42,19 +42,20 @@ DiscreteDistribution::DiscreteDistribution(std::span<const double> weights)
 std::size_t DiscreteDistribution::sample(double u, double& remapped) const {
     const auto it = std::upper_bound(cumulative_.begin(), cumulative_.end(), u);
     const auto index = static_cast<std::size_t>(it - cumulative_.begin());
-    remapped = share_of(index).remap(u);
+    remapped = interval_of(index).remap(u);
     return index;
 }
 
-DiscreteDistribution::Share DiscreteDistribution::share_of(std::size_t index) const {
+DiscreteDistribution::Interval DiscreteDistribution::interval_of(std::size_t index) const {
     const double begin = index == 0 ? 0.0 : cumulative_[index - 1];
     const double end = cumulative_[index];
     return {index, begin, end, 1.0 / std::max(end - begin, std::numeric_limits<double>::min())};
 }
 
-DiscreteDistribution::Share DiscreteDistribution::share_from(std::size_t hint, double u) const {
-    if (u < cumulative_[hint]) return share_of(hint);
-    // Gallop: shares are usually narrower than the steps of u only by a small factor.
+DiscreteDistribution::Interval DiscreteDistribution::interval_from(std::size_t hint,
+                                                                   double u) const {
+    if (u < cumulative_[hint]) return interval_of(hint);
+    // Gallop: intervals are usually narrower than the steps of u only by a small factor.
     std::size_t step = 1;
     std::size_t low = hint;
     while (low + step < cumulative_.size() && cumulative_[low + step - 1] <= u) {
@@ -64,7 +65,7 @@ DiscreteDistribution::Share DiscreteDistribution::share_from(std::size_t hint, d
     const auto first = cumulative_.begin() + static_cast<std::ptrdiff_t>(low);
     const auto last =
         cumulative_.begin() + static_cast<std::ptrdiff_t>(std::min(low + step, cumulative_.size()));
-    return share_of(
+    return interval_of(
         static_cast<std::size_t>(std::upper_bound(first, last, u) - cumulative_.begin()));
 }
 

@@ -54,11 +54,11 @@ class DiscreteDistribution {
     std::size_t size() const { return cumulative_.size(); }
     double sum() const { return sum_; }
 
-    /// The index whose share of [0, 1) holds u. `remapped` becomes uniform in [0, 1) given the
+    /// The index whose interval of [0, 1) holds u. `remapped` becomes uniform in [0, 1) given the
     /// index.
     std::size_t sample(double u, double& remapped) const;
     /// The part [begin, end) of [0, 1) that belongs to an index.
-    struct Share {
+    struct Interval {
         std::size_t index;
         double begin;
         double end;
@@ -69,13 +69,13 @@ class DiscreteDistribution {
             return std::clamp((u - begin) * inverse_width, 0.0, kBelowOne);
         }
     };
-    /// The share that holds u, searched upwards from an index not beyond its own.
-    Share share_from(std::size_t hint, double u) const;
+    /// The interval that holds u, searched upwards from an index not beyond its own.
+    Interval interval_from(std::size_t hint, double u) const;
 
  private:
-    Share share_of(std::size_t index) const;
+    Interval interval_of(std::size_t index) const;
 
-    std::vector<double> cumulative_;  ///< upper end of each index's share, last is 1
+    std::vector<double> cumulative_;  ///< upper end of each index's interval, last is 1
     double sum_ = 0.0;
 };
 

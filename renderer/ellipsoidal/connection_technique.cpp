@@ -7,7 +7,7 @@ namespace renderer {
 namespace {
 
 // Of the samples of a surface that follow a narrow lobe, the fraction that this technique does too.
-constexpr double kLobeShare = 0.75;
+constexpr double kLobeFraction = 0.75;
 
 // Lobes of a larger alpha are not narrow: facets are then chosen by size and cosines alone.
 constexpr double kWidestLobe = 0.3;
@@ -25,11 +25,11 @@ core::Vec3 lit_normal(const PathEndpoint& end) {
 }
 
 // A vertex on a facet that has been chosen, if there is one.
-std::optional<ConnectionDraw> place_on(const Scene& scene,
-                                       const FocusPair& foci,
-                                       const std::optional<FacetChoice>& choice,
-                                       core::Rng& rng,
-                                       const ConnectionLobe* lobe = nullptr) {
+std::optional<ConnectionDraw> connect_on(const Scene& scene,
+                                         const FocusPair& foci,
+                                         const std::optional<FacetChoice>& choice,
+                                         core::Rng& rng,
+                                         const ConnectionLobe* lobe = nullptr) {
     if (!choice) return std::nullopt;
     const double opl_m = choice->lengths.low_m + rng.uniform() * choice->lengths.width_m();
     const auto connection =
@@ -40,7 +40,7 @@ std::optional<ConnectionDraw> place_on(const Scene& scene,
         choice->probability / choice->lengths.width_m() * connection->pdf_area_per_pdf_opl};
 }
 
-// Density of place_on() and of the choice together [1/m^2].
+// Density of connect_on() and of the choice together [1/m^2].
 double pdf_on(const Scene& scene,
               const FocusPair& foci,
               const FacetChoice& choice,
@@ -91,7 +91,7 @@ std::optional<LobeOnFacet> ConnectionTechnique::lobe_of(const PathVertex& vertex
     // The lobe falls to half of its peak where the half vector is tilted by about alpha; the
     // direction turns by twice that angle.
     return LobeOnFacet{
-        met->facet, {mirrored, met->position, 2.0 * lobe->alpha}, kLobeShare * lobe->fraction};
+        met->facet, {mirrored, met->position, 2.0 * lobe->alpha}, kLobeFraction * lobe->fraction};
 }
 
 // The facet that the lobe hits, with the probability that a draw takes it; 0 without a lobe or
@@ -111,15 +111,15 @@ std::optional<ConnectionDraw> ConnectionTechnique::sample(
     const std::optional<LobeOnFacet>& lobe) const {
     const FacetChoice by_lobe = choice_by_lobe(ends, lengths, lobe);
     if (!(by_lobe.probability > 0.0)) {
-        return place_on(*scene_, ends.foci, hierarchy_.sample(ends, lengths, rng.uniform()), rng);
+        return connect_on(*scene_, ends.foci, hierarchy_.sample(ends, lengths, rng.uniform()), rng);
     }
     std::optional<ConnectionDraw> draw;
     if (rng.uniform() < by_lobe.probability) {
-        draw = place_on(*scene_, ends.foci, by_lobe, rng, &lobe->lobe);
+        draw = connect_on(*scene_, ends.foci, by_lobe, rng, &lobe->lobe);
         if (!draw) return std::nullopt;
         draw->pdf_area += (1.0 - by_lobe.probability) * pdf_area(ends, lengths, draw->point);
     } else {
-        draw = place_on(*scene_, ends.foci, hierarchy_.sample(ends, lengths, rng.uniform()), rng);
+        draw = connect_on(*scene_, ends.foci, hierarchy_.sample(ends, lengths, rng.uniform()), rng);
         if (!draw) return std::nullopt;
         draw->pdf_area = (1.0 - by_lobe.probability) * draw->pdf_area +
                          pdf_on(*scene_, ends.foci, by_lobe, draw->point, &lobe->lobe);
@@ -143,7 +143,7 @@ std::optional<ConnectionDraw> ConnectionTechnique::sample(const HierarchyCut& cu
                                                           double u,
                                                           std::size_t& hint,
                                                           core::Rng& rng) const {
-    return place_on(*scene_, cut.foci(), cut.sample(u, hint), rng);
+    return connect_on(*scene_, cut.foci(), cut.sample(u, hint), rng);
 }
 
 double ConnectionTechnique::pdf_area(const HierarchyCut& cut, const SurfacePoint& point) const {

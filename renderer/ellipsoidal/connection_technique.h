@@ -44,7 +44,7 @@ class ConnectionTechnique {
     const TriangleHierarchy& hierarchy() const { return hierarchy_; }
 
     /// ends      neighbours of the vertex
-    /// lengths   interval of the length of its two legs [m]
+    /// lengths   interval of the length of its two segments [m]
     /// lobe      of focus a, see lobe_of()
     /// returns   nothing where the draw finds no point; pdf_area() integrates to the probability
     ///           that it does

@@ -11,10 +11,10 @@ namespace {
 using core::Vec2;
 using core::Vec3;
 
-// Share of samples that choose the length first. They cost several times as much as the others, of
-// which only the share `asked` has a length within the axis (constants tuned on scenes/bars and
-// scenes/letter).
-double ellipsoidal_share(double asked) {
+// Fraction of samples that choose the length first. They cost several times as much as the others,
+// of which only the fraction `asked` has a length within the axis (constants tuned on scenes/bars
+// and scenes/letter).
+double ellipsoidal_fraction(double asked) {
     constexpr double kMax = 0.85;
     constexpr double kMin = 0.05;
     constexpr double kHalved = 0.3;
@@ -77,9 +77,9 @@ class EllipsoidalTracer::Walk : public PairWalk {
     double opl_to_light(const PathVertex& vertex) const;
 
     const EllipsoidalTracer& tracer_;
-    HierarchyCut cut_;                ///< for third bounces
-    double ellipsoidal_share_ = 0.0;  ///< of third bounces
-    double walk_weight_ = 0.0;        ///< of one walk: 1 / their expected number
+    HierarchyCut cut_;                   ///< for third bounces
+    double ellipsoidal_fraction_ = 0.0;  ///< of third bounces
+    double walk_weight_ = 0.0;           ///< of one walk: 1 / their expected number
     std::array<double, FirstVertexBatch::kCapacity> ellipsoidal_pdf_;
 };
 
@@ -95,7 +95,7 @@ EllipsoidalTracer::EllipsoidalTracer(const Scene& scene,
       excluded_(ExcludedFacets::of(scene, axis, settings)),
       technique_(scene, excluded_, scan) {
     const SensorPairs sensor_pairs(scene, scan);
-    if (sensor_pairs.is_image()) pixel_places_.emplace(sensor_pairs, sensor_pairs.camera());
+    if (sensor_pairs.is_image()) pixel_positions_.emplace(sensor_pairs, sensor_pairs.camera());
 }
 
 std::unique_ptr<PairWalk> EllipsoidalTracer::start(const PathEndpoints& ends,
@@ -106,28 +106,28 @@ std::unique_ptr<PairWalk> EllipsoidalTracer::start(const PathEndpoints& ends,
 
 void EllipsoidalTracer::Walk::trace_samples(int count) {
     cut_hierarchy(count);
-    // Numbers of each kind are rounded at random, so that their means are the shares that the
+    // Numbers of each kind are rounded at random, so that their means are the fractions that the
     // weights assume: all by the same number, so that none takes from another.
     const double u = rng_.uniform();
     const auto rounded = [&](double expected) { return static_cast<int>(expected + u); };
-    const double share = ellipsoidal_share_;
-    const int num_connections = rounded(count * share);
-    const int num_chosen = rounded(count * (share + (1.0 - share) * kAreaShareFromWall));
+    const double fraction = ellipsoidal_fraction_;
+    const int num_connections = rounded(count * fraction);
+    const int num_chosen = rounded(count * (fraction + (1.0 - fraction) * kAreaFractionFromWall));
     trace_connections(num_connections);
     trace_walks(num_chosen - num_connections, count - num_chosen, walk_weight_);
 }
 
 // For third bounces, before any is traced.
 void EllipsoidalTracer::Walk::cut_hierarchy(int num_samples) {
-    const OplBand lengths{tracer_.lengths_.low_m - ends_.device_legs_m,
-                          tracer_.lengths_.high_m - ends_.device_legs_m};
+    const OplBand lengths{tracer_.lengths_.low_m - ends_.device_segments_m,
+                          tracer_.lengths_.high_m - ends_.device_segments_m};
     if (tracer_.facet_traits_.any_adds()) {
         cut_.rebuild(connection_ends(ends_),
                      lengths,
                      std::max(kMinEntries, static_cast<std::size_t>(num_samples)));
     }
-    if (!cut_.empty()) ellipsoidal_share_ = ellipsoidal_share(cut_.share_asked());
-    walk_weight_ = 1.0 / (num_samples * (1.0 - ellipsoidal_share_));
+    if (!cut_.empty()) ellipsoidal_fraction_ = ellipsoidal_fraction(cut_.fraction_asked());
+    walk_weight_ = 1.0 / (num_samples * (1.0 - ellipsoidal_fraction_));
 }
 
 void EllipsoidalTracer::Walk::trace_connections(int count) {
@@ -159,15 +159,15 @@ void EllipsoidalTracer::Walk::trace_pixel_samples(const SensorPairs& sensor_pair
                                                   std::size_t pixel,
                                                   int count,
                                                   const LightSubpaths*) {
-    const SurfaceWalk& walk = tracer_.surface_walk_;
-    const PixelPositionSampler::Band places = tracer_.pixel_places_->band(pixel, tracer_.lengths_);
+    const RandomWalk& walk = tracer_.random_walk_;
+    const PixelPositionSampler::Band band = tracer_.pixel_positions_->band(pixel, tracer_.lengths_);
     const Vec2 shift(rng_.uniform(), rng_.uniform());
     for (int i = 0; i < count; ++i) {
-        const Vec2 place = places.sample(core::lattice_point(i, count, shift));
-        auto vertex = sensor_pairs.first_vertex(pixel, place);
+        const Vec2 position = band.sample(core::lattice_point(i, count, shift));
+        auto vertex = sensor_pairs.first_vertex(pixel, position);
         ++num_rays_;
         if (!vertex || vertex->order > tracer_.max_order_) continue;
-        vertex->throughput /= count * places.pdf(place);
+        vertex->throughput /= count * band.pdf(position);
         const double value = walk.connection_value(*vertex, ends_);
         if (value > 0.0 && tracer_.scope_ != ConnectionScope::Excluded &&
             histogram_.gate().admits(opl_to_light(*vertex))) {
@@ -191,20 +191,20 @@ void EllipsoidalTracer::Walk::weigh_first_vertices() {
 // get 0, so that no ray is traced for them.
 void EllipsoidalTracer::Walk::weigh(int index, double ellipsoidal_pdf) {
     const auto i = static_cast<std::size_t>(index);
-    const double by_walk = (1.0 - ellipsoidal_share_) * first_.pdf_area(index);
-    const double both = by_walk + ellipsoidal_share_ * ellipsoidal_pdf;
+    const double by_walk = (1.0 - ellipsoidal_fraction_) * first_.pdf_area(index);
+    const double both = by_walk + ellipsoidal_fraction_ * ellipsoidal_pdf;
     const bool keeps = histogram_.gate().admits(first_.opl_m()[i]) &&
                        tracer_.in_scope(first_.facet(index)) && both > 0.0;
     first_.set_contribution(index, keeps ? first_.contributions()[i] * by_walk / both : 0.0);
 }
 
 void EllipsoidalTracer::Walk::extend(PathVertex vertex) {
-    const SurfaceWalk& walk = tracer_.surface_walk_;
+    const RandomWalk& walk = tracer_.random_walk_;
     while (vertex.order < tracer_.max_order_) {
         if (!walk.survives(vertex, rng_)) return;
         const ConnectionEnds ends = connection_ends(vertex, ends_.light);
-        // What is left of the lengths asked for, for the two legs to the light.
-        const double before = vertex.extent.opl_m + ends_.device_legs_m;
+        // What is left of the lengths asked for, for the two segments to the light.
+        const double before = vertex.optical_path.opl_m + ends_.device_segments_m;
         const OplBand lengths{tracer_.lengths_.low_m - before, tracer_.lengths_.high_m - before};
         // No longer path from here is shorter than the one straight to the light.
         if (lengths.high_m < (ends.foci.a - ends.foci.b).norm()) return;
@@ -229,7 +229,7 @@ void EllipsoidalTracer::Walk::connect(const PathVertex& vertex,
                                       const OplBand& lengths,
                                       const std::optional<LobeOnFacet>& lobe,
                                       int num_draws) {
-    const SurfaceWalk& walk = tracer_.surface_walk_;
+    const RandomWalk& walk = tracer_.random_walk_;
     const auto draw = tracer_.technique_.sample(ends, lengths, rng_, lobe);
     if (!draw || !tracer_.in_scope(draw->point.facet)) return;
     const auto step = walk.step_to(vertex, draw->point);
@@ -249,8 +249,8 @@ void EllipsoidalTracer::Walk::connect(const PathVertex& vertex,
 }
 
 double EllipsoidalTracer::Walk::opl_to_light(const PathVertex& vertex) const {
-    return vertex.extent.opl_m + (ends_.light.position - vertex.point.position).norm() +
-           ends_.device_legs_m;
+    return vertex.optical_path.opl_m + (ends_.light.position - vertex.point.position).norm() +
+           ends_.device_segments_m;
 }
 
 }  // namespace renderer

@@ -47,7 +47,7 @@ class EllipsoidalTracer : public Tracer {
     OplBand lengths_;  ///< of whole paths
     ExcludedFacets excluded_;
     ConnectionTechnique technique_;
-    std::optional<PixelPositionSampler> pixel_places_;  ///< of images
+    std::optional<PixelPositionSampler> pixel_positions_;  ///< of images
 };
 
 }  // namespace renderer

@@ -24,7 +24,7 @@ void HierarchyCut::rebuild(const ConnectionEnds& ends,
     everything.to = std::numeric_limits<float>::max();
     const TriangleHierarchy::Node& root = hierarchy_->nodes_.front();
     const float all = hierarchy_->importance(root, everything).sum();
-    share_asked_ = all > 0.0F ? double{hierarchy_->importance(root, query_).sum() / all} : 0.0;
+    fraction_asked_ = all > 0.0F ? double{hierarchy_->importance(root, query_).sum() / all} : 0.0;
     entries_.push_back({0, 0, 1.0, 0.0, {}});
     while (expand(max_entries)) {
     }
@@ -80,7 +80,7 @@ void HierarchyCut::append_children(std::int32_t node) {
 
 // Estimated contribution of a facet: its area within the interval times cosines and falloff at a
 // point of its plane in the direction of the centroid that has the wanted length. It is 0 only
-// where the contribution is: a facet partly below an end's horizon keeps a share.
+// where the contribution is: a facet partly below an end's horizon keeps a part.
 double HierarchyCut::facet_weight(std::uint32_t index, OplBand& lengths) const {
     const Facet& facet = hierarchy_->scene_->facet(index);
     const double lit_side = double{hierarchy_->sides_[index]};
@@ -120,14 +120,14 @@ double HierarchyCut::facet_weight(std::uint32_t index, OplBand& lengths) const {
     return facet.area_m2 * lengths.width_m() / band.width_m() * at_a * at_b;
 }
 
-double HierarchyCut::share(std::size_t entry) const {
+double HierarchyCut::fraction(std::size_t entry) const {
     return entries_[entry].end - (entry == 0 ? 0.0 : entries_[entry - 1].end);
 }
 
 std::optional<FacetChoice> HierarchyCut::sample(double u, std::size_t& hint) const {
     while (hint + 1 < entries_.size() && u >= entries_[hint].end) ++hint;
     const Entry& entry = entries_[hint];
-    const double probability = share(hint);
+    const double probability = fraction(hint);
     if (entry.child < 0) {
         return FacetChoice{hierarchy_->order_[entry.first], probability, entry.lengths};
     }
@@ -138,7 +138,7 @@ std::optional<FacetChoice> HierarchyCut::sample(double u, std::size_t& hint) con
 
 FacetChoice HierarchyCut::evaluate(std::uint32_t facet) const {
     FacetChoice choice{facet, 0.0, {}};
-    if (entries_.empty() || hierarchy_->places_[facet].node < 0) return choice;
+    if (entries_.empty() || hierarchy_->slots_[facet].node < 0) return choice;
     // The last entry that begins at or before the facet, if it holds it.
     const std::uint32_t position = hierarchy_->positions_[facet];
     auto after = std::upper_bound(
@@ -150,13 +150,14 @@ FacetChoice HierarchyCut::evaluate(std::uint32_t facet) const {
     const Entry& entry = entries_[index];
     if (entry.child < 0) {
         if (entry.first != position) return choice;
-        choice.probability = share(index);
+        choice.probability = fraction(index);
         choice.lengths = entry.lengths;
         return choice;
     }
     choice.lengths = hierarchy_->part_of(lengths_, ends_.foci, facet);
     if (!(choice.lengths.width_m() > 0.0)) return choice;
-    choice.probability = share(index) * hierarchy_->descent_probability(entry.child, query_, facet);
+    choice.probability =
+        fraction(index) * hierarchy_->descent_probability(entry.child, query_, facet);
     return choice;
 }
 

@@ -17,8 +17,8 @@ class HierarchyCut {
     void rebuild(const ConnectionEnds& ends, const OplBand& lengths, std::size_t max_entries);
 
     bool empty() const { return entries_.empty(); }
-    /// Estimated share of the contribution of all lengths that lies within the interval.
-    double share_asked() const { return share_asked_; }
+    /// Estimated fraction of the contribution of all lengths that lies within the interval.
+    double fraction_asked() const { return fraction_asked_; }
     const FocusPair& foci() const { return ends_.foci; }
 
     /// As TriangleHierarchy::sample() for the ends of rebuild(). `hint` is updated so that calls
@@ -31,20 +31,20 @@ class HierarchyCut {
         std::int32_t child = 0;   ///< as Node::child
         std::uint32_t first = 0;  ///< position of its first facet
         double weight = 0.0;
-        double end = 0.0;  ///< upper end of its share of [0, 1)
+        double end = 0.0;  ///< upper end of its interval of [0, 1)
         OplBand lengths;   ///< of a single facet
     };
 
     bool expand(std::size_t max_entries);
     void append_children(std::int32_t node);
     double facet_weight(std::uint32_t facet, OplBand& lengths) const;
-    double share(std::size_t entry) const;
+    double fraction(std::size_t entry) const;
 
     const TriangleHierarchy* hierarchy_;
     ConnectionEnds ends_;
     OplBand lengths_;
     TriangleHierarchy::Query query_;
-    double share_asked_ = 0.0;
+    double fraction_asked_ = 0.0;
     std::vector<Entry> entries_;
     std::vector<Entry> next_;
 };

@@ -13,17 +13,17 @@ namespace {
 using core::Vec2;
 using core::Vec3;
 
-// Share of the positions drawn by length.
-constexpr double kWantedShare = 0.5;
+// Fraction of the positions drawn by length.
+constexpr double kWantedFraction = 0.5;
 
-// Strips that differ by less than this share of their width count as the same.
+// Strips that differ by less than this fraction of their width count as the same.
 constexpr double kSameStrip = 0.25;
 
-// Smaller shares of a pixel are rounding errors.
-constexpr double kMinShare = 1e-6;
+// Smaller fractions of a pixel are rounding errors.
+constexpr double kMinFraction = 1e-6;
 
 // P(a U + b V < t) for uniform U, V and a >= b >= 0, a > 0.
-double share_below(double a, double b, double t) {
+double fraction_below(double a, double b, double t) {
     if (t <= 0.0) return 0.0;
     if (t >= a + b) return 1.0;
     if (t < b) return t * t / (2.0 * a * b);
@@ -32,10 +32,10 @@ double share_below(double a, double b, double t) {
 }
 
 // Its inverse.
-double below_share(double a, double b, double share) {
-    if (share * 2.0 * a < b) return std::sqrt(2.0 * a * b * share);
-    if ((1.0 - share) * 2.0 * a < b) return a + b - std::sqrt(2.0 * a * b * (1.0 - share));
-    return share * a + 0.5 * b;
+double below_fraction(double a, double b, double fraction) {
+    if (fraction * 2.0 * a < b) return std::sqrt(2.0 * a * b * fraction);
+    if ((1.0 - fraction) * 2.0 * a < b) return a + b - std::sqrt(2.0 * a * b * (1.0 - fraction));
+    return fraction * a + 0.5 * b;
 }
 
 }  // namespace
@@ -54,10 +54,10 @@ void PixelPositionSampler::Band::add_strip(double start_m,
         if (most < kSameStrip * (lengths.high_m - lengths.low_m)) return;
     }
     const double shortest = start_m + slope_m.cwiseMin(0.0).sum();
-    const double below = share_below(a, b, lengths.low_m - shortest);
-    const double share = share_below(a, b, lengths.high_m - shortest) - below;
-    if (share > kMinShare && share < 1.0) {
-        strips_[num_strips_++] = {start_m, slope_m, lengths, below, share};
+    const double below = fraction_below(a, b, lengths.low_m - shortest);
+    const double fraction = fraction_below(a, b, lengths.high_m - shortest) - below;
+    if (fraction > kMinFraction && fraction < 1.0) {
+        strips_[num_strips_++] = {start_m, slope_m, lengths, below, fraction};
     }
 }
 
@@ -67,49 +67,50 @@ Vec2 PixelPositionSampler::Band::Strip::sample(const Vec2& u) const {
     const int flat = 1 - steep;
     const double a = std::abs(slope_m[steep]);
     const double b = std::abs(slope_m[flat]);
-    const double t = below_share(a, b, below + u.x() * share);
+    const double t = below_fraction(a, b, below + u.x() * fraction);
     const double first = b > 0.0 ? std::max(0.0, (t - a) / b) : 0.0;
     const double last = b > 0.0 ? std::min(1.0, t / b) : 1.0;
-    Vec2 place;
-    place[flat] = first + u.y() * (last - first);
-    place[steep] = std::clamp((t - b * place[flat]) / a, 0.0, 1.0);
+    Vec2 position;
+    position[flat] = first + u.y() * (last - first);
+    position[steep] = std::clamp((t - b * position[flat]) / a, 0.0, 1.0);
     for (const int side : {0, 1}) {
-        if (slope_m[side] < 0.0) place[side] = 1.0 - place[side];
+        if (slope_m[side] < 0.0) position[side] = 1.0 - position[side];
     }
-    return place;
+    return position;
 }
 
 Vec2 PixelPositionSampler::Band::sample(const Vec2& u) const {
     if (num_strips_ == 0) return u;
-    if (u.x() >= kWantedShare) return {(u.x() - kWantedShare) / (1.0 - kWantedShare), u.y()};
-    const double scaled = u.x() / kWantedShare * static_cast<double>(num_strips_);
+    if (u.x() >= kWantedFraction)
+        return {(u.x() - kWantedFraction) / (1.0 - kWantedFraction), u.y()};
+    const double scaled = u.x() / kWantedFraction * static_cast<double>(num_strips_);
     const std::size_t strip = std::min(static_cast<std::size_t>(scaled), num_strips_ - 1);
     return strips_[strip].sample({scaled - static_cast<double>(strip), u.y()});
 }
 
-double PixelPositionSampler::Band::pdf(const Vec2& place) const {
+double PixelPositionSampler::Band::pdf(const Vec2& position) const {
     if (num_strips_ == 0) return 1.0;
     double wanted = 0.0;
     for (std::size_t i = 0; i < num_strips_; ++i) {
         const Strip& strip = strips_[i];
-        const double opl_m = strip.start_m + strip.slope_m.dot(place);
+        const double opl_m = strip.start_m + strip.slope_m.dot(position);
         if (opl_m >= strip.lengths.low_m && opl_m <= strip.lengths.high_m) {
-            wanted += 1.0 / strip.share;
+            wanted += 1.0 / strip.fraction;
         }
     }
-    return 1.0 - kWantedShare + kWantedShare * wanted / static_cast<double>(num_strips_);
+    return 1.0 - kWantedFraction + kWantedFraction * wanted / static_cast<double>(num_strips_);
 }
 
 // Lengths at the positions of a pixel as if it showed the plane seen at the centre of another one.
 class PixelPositionSampler::PlaneLengths {
  public:
-    PlaneLengths(const PixelPositionSampler& places, std::size_t pixel, std::size_t seen_by)
-        : places_(places),
-          corner_(static_cast<double>(pixel / places.height_),
-                  static_cast<double>(pixel % places.height_),
+    PlaneLengths(const PixelPositionSampler& sampler, std::size_t pixel, std::size_t seen_by)
+        : sampler_(sampler),
+          corner_(static_cast<double>(pixel / sampler.height_),
+                  static_cast<double>(pixel % sampler.height_),
                   1.0),
-          normal_(places.normals_[seen_by]),
-          distance_m_(normal_.dot(places.positions_[seen_by] - places.pinhole_)) {}
+          normal_(sampler.normals_[seen_by]),
+          distance_m_(normal_.dot(sampler.positions_[seen_by] - sampler.pinhole_)) {}
 
     // Adds a strip about the line of the middle of the wanted lengths, as wide as the interval and
     // widened by the error of the linearisation where the line leaves the pixel.
@@ -121,16 +122,16 @@ class PixelPositionSampler::PlaneLengths {
         const double longest = line.start_m + line.slope_m.cwiseMax(0.0).sum();
         const double middle_m = 0.5 * (std::clamp(wanted.low_m, shortest, longest) +
                                        std::clamp(wanted.high_m, shortest, longest));
-        Vec2 place(0.5, 0.5);
+        Vec2 position(0.5, 0.5);
         for (int i = 0; i < kSteps; ++i) {
-            const double off = middle_m - line.start_m - line.slope_m.dot(place);
-            place += off / line.slope_m.squaredNorm() * line.slope_m;
-            if (!((place - Vec2(0.5, 0.5)).norm() < kFarthest)) return;
-            line = tangent(place);
+            const double off = middle_m - line.start_m - line.slope_m.dot(position);
+            position += off / line.slope_m.squaredNorm() * line.slope_m;
+            if (!((position - Vec2(0.5, 0.5)).norm() < kFarthest)) return;
+            line = tangent(position);
         }
         double off = 0.0;
         for (const double end : {0.0, 1.0}) {
-            off = std::max(off, std::abs(opl_m(line.place_at_end(middle_m, end)) - middle_m));
+            off = std::max(off, std::abs(opl_m(line.position_at_end(middle_m, end)) - middle_m));
         }
         band.add_strip(line.start_m, line.slope_m, {wanted.low_m - off, wanted.high_m + off});
     }
@@ -141,50 +142,51 @@ class PixelPositionSampler::PlaneLengths {
         Vec2 slope_m;
 
         // Where the line of a length leaves the pixel on one side.
-        Vec2 place_at_end(double opl, double end) const {
+        Vec2 position_at_end(double opl, double end) const {
             const int steep = std::abs(slope_m.x()) >= std::abs(slope_m.y()) ? 0 : 1;
             const int flat = 1 - steep;
-            Vec2 place;
-            place[flat] = end;
-            place[steep] =
+            Vec2 position;
+            position[flat] = end;
+            position[steep] =
                 std::clamp((opl - start_m - end * slope_m[flat]) / slope_m[steep], 0.0, 1.0);
             if (slope_m[flat] != 0.0) {
-                place[flat] = std::clamp(
-                    (opl - start_m - slope_m[steep] * place[steep]) / slope_m[flat], 0.0, 1.0);
+                position[flat] = std::clamp(
+                    (opl - start_m - slope_m[steep] * position[steep]) / slope_m[flat], 0.0, 1.0);
             }
-            return place;
+            return position;
         }
     };
 
-    Vec3 ray(const Vec2& place) const {
-        return places_.world_from_image_ * (corner_ + Vec3(place.x(), place.y(), 0.0));
+    Vec3 ray(const Vec2& position) const {
+        return sampler_.world_from_image_ * (corner_ + Vec3(position.x(), position.y(), 0.0));
     }
 
-    double opl_m(const Vec2& place) const {
-        const Vec3 along = ray(place);
-        const Vec3 leg = distance_m_ / normal_.dot(along) * along;
-        return leg.norm() + (places_.pinhole_ + leg - places_.light_).norm();
+    double opl_m(const Vec2& position) const {
+        const Vec3 along = ray(position);
+        const Vec3 segment = distance_m_ / normal_.dot(along) * along;
+        return segment.norm() + (sampler_.pinhole_ + segment - sampler_.light_).norm();
     }
 
     // The ray d meets the plane after t = distance / n.d times itself; with t' = -t n.d' / n.d the
-    // gradients of both legs follow. Not a number when the plane is not seen.
-    Line tangent(const Vec2& place) const {
-        const Vec3 along = ray(place);
+    // gradients of both segments follow. Not a number when the plane is not seen.
+    Line tangent(const Vec2& position) const {
+        const Vec3 along = ray(position);
         const double towards = normal_.dot(along);
         const double t = distance_m_ / towards;
         if (!(t > 0.0)) return {std::nan(""), Vec2::Constant(std::nan(""))};
-        const Vec3 seen = places_.pinhole_ + t * along;
-        const Vec3 growth = along.normalized() + (seen - places_.light_).normalized();
+        const Vec3 seen = sampler_.pinhole_ + t * along;
+        const Vec3 growth = along.normalized() + (seen - sampler_.light_).normalized();
         Line line;
         for (const int side : {0, 1}) {
-            const Vec3 turn = places_.world_from_image_.col(side);
+            const Vec3 turn = sampler_.world_from_image_.col(side);
             line.slope_m[side] = growth.dot(t * turn - t * normal_.dot(turn) / towards * along);
         }
-        line.start_m = t * along.norm() + (seen - places_.light_).norm() - line.slope_m.dot(place);
+        line.start_m =
+            t * along.norm() + (seen - sampler_.light_).norm() - line.slope_m.dot(position);
         return line;
     }
 
-    const PixelPositionSampler& places_;
+    const PixelPositionSampler& sampler_;
     Vec3 corner_;
     Vec3 normal_;
     double distance_m_;
@@ -204,7 +206,7 @@ PixelPositionSampler::PixelPositionSampler(const SensorPairs& sensor_pairs,
         if (!seen) return;
         positions_[pixel] = seen->point.position;
         normals_[pixel] = seen->normal;
-        opl_m_[pixel] = seen->extent.opl_m + (light_ - positions_[pixel]).norm();
+        opl_m_[pixel] = seen->optical_path.opl_m + (light_ - positions_[pixel]).norm();
     });
 }
 

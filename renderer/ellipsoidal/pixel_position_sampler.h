@@ -32,15 +32,15 @@ class PixelPositionSampler {
         /// A position, from u uniform in [0, 1)^2; the first number may be stratified.
         core::Vec2 sample(const core::Vec2& u) const;
         /// Density over the pixel, 1 on average.
-        double pdf(const core::Vec2& place) const;
+        double pdf(const core::Vec2& position) const;
 
      private:
         struct Strip {
             double start_m = 0.0;
             core::Vec2 slope_m = core::Vec2::Zero();
             OplBand lengths;
-            double below = 0.0;  ///< share of the pixel with shorter lengths
-            double share = 0.0;  ///< share with these lengths
+            double below = 0.0;     ///< fraction of the pixel with shorter lengths
+            double fraction = 0.0;  ///< fraction with these lengths
 
             core::Vec2 sample(const core::Vec2& u) const;
         };

@@ -16,8 +16,8 @@ using core::Vec3;
 constexpr double kMargin = 4e-6;
 // Added to the spread of normals: above the rounding of cosines.
 constexpr float kSpreadMargin = 1e-3F;
-// Shortest leg assumed, relative to the radius of a box that may contain its end.
-constexpr float kNearestLeg = 0.1F;
+// Shortest segment assumed, relative to the radius of a box that may contain its end.
+constexpr float kNearestSegment = 0.1F;
 // Deepest level with unbalanced cuts; below it sets are halved, so that facets which cannot be told
 // apart end.
 constexpr int kDeepestCut = 40;
@@ -36,7 +36,7 @@ struct TriangleHierarchy::Builder {
     TriangleHierarchy& tree;
     std::span<const Facet> facets;
 
-    std::int32_t add_node(Range range, Place parent, std::uint32_t first, int depth) {
+    std::int32_t add_node(Range range, NodeSlot parent, std::uint32_t first, int depth) {
         const auto index = static_cast<std::int32_t>(tree.nodes_.size());
         tree.nodes_.emplace_back();
         tree.parents_.push_back(parent);
@@ -55,7 +55,7 @@ struct TriangleHierarchy::Builder {
             if (part.size() == 1) {
                 child = ~static_cast<std::int32_t>(position);
                 tree.order_.push_back(part[0]);
-                tree.places_[part[0]] = {index, slot};
+                tree.slots_[part[0]] = {index, slot};
                 tree.positions_[part[0]] = position;
             } else {
                 child = add_node(part, {index, slot}, position, depth + 1);
@@ -110,7 +110,7 @@ struct TriangleHierarchy::Builder {
 TriangleHierarchy::TriangleHierarchy(const Scene& scene,
                                      std::span<const std::uint32_t> facets,
                                      std::span<const int> sides)
-    : scene_(&scene), places_(scene.facets().size()), positions_(scene.facets().size()) {
+    : scene_(&scene), slots_(scene.facets().size()), positions_(scene.facets().size()) {
     for (const Facet& facet : scene.facets()) {
         sides_.push_back(static_cast<float>(sides[facet.object]));
     }
@@ -156,9 +156,9 @@ TriangleHierarchy::NodeView TriangleHierarchy::view_of(const Node& node, const Q
 // Bounds over a box with centre c, d = focus - c. For a normal n within the chord `spread` of the
 // axis m, n.(focus - x) <= m.d + (half the box along m) + spread |focus - x|: a facet can face the
 // focus only where that is positive, and likewise for the part above an end's horizon. Values other
-// than 0 are estimates, for legs whose sum is the middle of the lengths asked for and whose product
-// is that of the shortest and the longest: on a facet that is large compared with its distance,
-// they are the legs to the part that has the length.
+// than 0 are estimates, for segments whose sum is the middle of the lengths asked for and whose
+// product is that of the shortest and the longest: on a facet that is large compared with its
+// distance, they are the segments to the part that has the length.
 TriangleHierarchy::Lanes TriangleHierarchy::importance(const Node& node, const Query& q) const {
     Lanes half_along_axis = Lanes::Zero();
     for (std::size_t k = 0; k < 3; ++k) half_along_axis += node.axis[k].abs() * node.half_size[k];
@@ -167,8 +167,8 @@ TriangleHierarchy::Lanes TriangleHierarchy::importance(const Node& node, const Q
 
     Lanes low = a.nearest + b.nearest;
     if (!q.coincide) {
-        // The two legs together are at least as long as one whose extent along each axis is the sum
-        // of theirs.
+        // The two segments together are at least as long as one whose extent along each axis is the
+        // sum of theirs.
         Lanes straight2 = Lanes::Zero();
         for (std::size_t k = 0; k < 3; ++k) {
             const auto i = static_cast<Eigen::Index>(k);
@@ -184,7 +184,7 @@ TriangleHierarchy::Lanes TriangleHierarchy::importance(const Node& node, const Q
     const Lanes shortest_a = a.nearest.max(length - b.farthest).max(0.5F * (length - q.apart));
     const Lanes longest_a =
         a.farthest.min(length - b.nearest).min(0.5F * (length + q.apart)).max(shortest_a);
-    const Lanes least2 = (kNearestLeg * node.radius).square();
+    const Lanes least2 = (kNearestSegment * node.radius).square();
     const Lanes inverse_a = (shortest_a * longest_a).max(least2).rsqrt();
     const Lanes inverse_b = ((length - shortest_a) * (length - longest_a)).max(least2).rsqrt();
 
@@ -247,14 +247,14 @@ std::optional<FacetChoice> TriangleHierarchy::draw_below(std::int32_t node,
         const std::array<float, kWidth + 1> ends = cumulate(importance(at, query));
         const float sum = ends[kWidth];
         if (!(sum > 0.0F)) return std::nullopt;
-        // The last share that begins at or before the target; shares of 0 are never the last.
+        // The last fraction that begins at or before the target; fractions of 0 are never the last.
         const double target = u * double{sum};
         const float below = std::min(static_cast<float>(target), std::nextafter(sum, 0.0F));
         std::size_t chosen = 0;
         for (std::size_t i = 1; i < kWidth; ++i) chosen += ends[i] <= below ? 1 : 0;
-        const double share = double{ends[chosen + 1]} - double{ends[chosen]};
-        u = std::clamp((target - double{ends[chosen]}) / share, 0.0, core::kBelowOne);
-        probability *= share / double{sum};
+        const double fraction = double{ends[chosen + 1]} - double{ends[chosen]};
+        u = std::clamp((target - double{ends[chosen]}) / fraction, 0.0, core::kBelowOne);
+        probability *= fraction / double{sum};
         node = at.child[chosen];
     }
     const std::uint32_t facet = order_[static_cast<std::uint32_t>(~node)];
@@ -266,17 +266,17 @@ double TriangleHierarchy::descent_probability(std::int32_t top,
                                               const Query& query,
                                               std::uint32_t facet) const {
     double probability = 1.0;
-    Place place = places_[facet];
+    NodeSlot node_slot = slots_[facet];
     while (true) {
-        if (place.node < 0) return 0.0;
-        const Node& at = nodes_[static_cast<std::size_t>(place.node)];
+        if (node_slot.node < 0) return 0.0;
+        const Node& at = nodes_[static_cast<std::size_t>(node_slot.node)];
         const std::array<float, kWidth + 1> ends = cumulate(importance(at, query));
-        const auto slot = static_cast<std::size_t>(place.slot);
-        const double share = double{ends[slot + 1]} - double{ends[slot]};
-        if (!(share > 0.0)) return 0.0;
-        probability *= share / double{ends[kWidth]};
-        if (place.node == top) return probability;
-        place = parents_[static_cast<std::size_t>(place.node)];
+        const auto slot = static_cast<std::size_t>(node_slot.slot);
+        const double fraction = double{ends[slot + 1]} - double{ends[slot]};
+        if (!(fraction > 0.0)) return 0.0;
+        probability *= fraction / double{ends[kWidth]};
+        if (node_slot.node == top) return probability;
+        node_slot = parents_[static_cast<std::size_t>(node_slot.node)];
     }
 }
 
@@ -298,7 +298,7 @@ std::optional<FacetChoice> TriangleHierarchy::sample(const ConnectionEnds& ends,
 FacetChoice TriangleHierarchy::evaluate(const ConnectionEnds& ends,
                                         const OplBand& lengths,
                                         std::uint32_t facet) const {
-    if (places_[facet].node < 0) return {facet, 0.0, {}};
+    if (slots_[facet].node < 0) return {facet, 0.0, {}};
     FacetChoice choice{facet, 0.0, part_of(lengths, ends.foci, facet)};
     if (!(choice.lengths.width_m() > 0.0)) return choice;
     choice.probability = descent_probability(0, make_query(ends, lengths), facet);

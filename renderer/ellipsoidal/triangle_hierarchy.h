@@ -26,8 +26,8 @@ struct FacetChoice {
 /// A tree over the facets that ellipsoidal connections use, eight children per node.
 ///
 /// A descent picks children with probabilities proportional to an estimate of their contribution:
-/// area x share of their lengths within the interval x the four cosines / squared distances, or 0
-/// when bounds prove that there is none. Children are tested eight at a time in single precision,
+/// area x fraction of their lengths within the interval x the four cosines / squared distances, or
+/// 0 when bounds prove that there is none. Children are tested eight at a time in single precision,
 /// relative to the centre of the set; all bounds are widened by more than its rounding.
 class TriangleHierarchy {
  public:
@@ -87,7 +87,7 @@ class TriangleHierarchy {
         float to = 0.0F;
         bool coincide = false;
     };
-    struct Place {
+    struct NodeSlot {
         std::int32_t node = -1;  ///< -1: none
         std::int32_t slot = 0;
     };
@@ -113,9 +113,9 @@ class TriangleHierarchy {
     core::Vec3 origin_ = core::Vec3::Zero();
     float margin_m_ = 0.0F;  ///< of lengths and box sizes, above the rounding of both
     std::vector<Node> nodes_;
-    std::vector<Place> parents_;             ///< of every node
+    std::vector<NodeSlot> parents_;          ///< of every node
     std::vector<std::uint32_t> order_;       ///< facets in the order of the leaves
-    std::vector<Place> places_;              ///< of every facet of the scene
+    std::vector<NodeSlot> slots_;            ///< of every facet of the scene
     std::vector<std::uint32_t> positions_;   ///< in order_, of every facet of the scene
     std::vector<std::uint32_t> first_leaf_;  ///< per node, position of its first facet
     std::vector<float> sides_;               ///< per facet of the scene

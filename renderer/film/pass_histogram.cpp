@@ -17,7 +17,7 @@ PassHistogram::PassHistogram(const core::HistogramAxes& axes, GateShape gate, in
     if (axes.velocity) velocity_.emplace(*axes.velocity, axes.time.num_bins);
 }
 
-void PassHistogram::add(int channel, const PathExtent& path, double value) {
+void PassHistogram::add(int channel, const OpticalPath& path, double value) {
     if (!std::isfinite(value) || !std::isfinite(path.opl_m)) {
         ++num_non_finite_;
         return;
@@ -59,7 +59,7 @@ void PassHistogram::add(int channel,
         return;
     }
     // As TimeAxis::bin_of(), for all at once; lengths outside the axis share one place.
-    std::array<int, kMaxAtOnce> places;
+    std::array<int, kMaxAtOnce> indices;
     const double start = axis_.opl_start_m;
     const double width = axis_.bin_width_m;
     const int num_bins = axis_.num_bins;
@@ -68,12 +68,12 @@ void PassHistogram::add(int channel,
         double position = (opl_m[i] - start) / width;
         position = position >= 0.0 ? position : end;
         position = values[i] != 0.0 ? position : end;
-        places[i] = static_cast<int>(position < end ? position : end);
+        indices[i] = static_cast<int>(position < end ? position : end);
     }
     int lowest = num_bins;
     int highest = -1;
     for (std::size_t i = 0; i < size; ++i) {
-        const int bin = places[i];
+        const int bin = indices[i];
         const int inside = bin < num_bins ? bin : -1;
         lowest = bin < lowest ? bin : lowest;
         highest = inside > highest ? inside : highest;
@@ -81,7 +81,7 @@ void PassHistogram::add(int channel,
     const int first = channel * num_bins;
     const int outside = static_cast<int>(values_.size()) - 1;
     for (std::size_t i = 0; i < size; ++i) {
-        places[i] = places[i] < num_bins ? first + places[i] : outside;
+        indices[i] = indices[i] < num_bins ? first + indices[i] : outside;
     }
     first_touched_ = std::min(first_touched_, lowest);
     last_touched_ = std::max(last_touched_, highest);
@@ -89,13 +89,13 @@ void PassHistogram::add(int channel,
     // parts in turn breaks these chains.
     const std::size_t part = size / 4;
     for (std::size_t i = 0; i < part; ++i) {
-        values_[static_cast<std::size_t>(places[i])] += values[i];
-        values_[static_cast<std::size_t>(places[i + part])] += values[i + part];
-        values_[static_cast<std::size_t>(places[i + 2 * part])] += values[i + 2 * part];
-        values_[static_cast<std::size_t>(places[i + 3 * part])] += values[i + 3 * part];
+        values_[static_cast<std::size_t>(indices[i])] += values[i];
+        values_[static_cast<std::size_t>(indices[i + part])] += values[i + part];
+        values_[static_cast<std::size_t>(indices[i + 2 * part])] += values[i + 2 * part];
+        values_[static_cast<std::size_t>(indices[i + 3 * part])] += values[i + 3 * part];
     }
     for (std::size_t i = 4 * part; i < size; ++i) {
-        values_[static_cast<std::size_t>(places[i])] += values[i];
+        values_[static_cast<std::size_t>(indices[i])] += values[i];
     }
 }
 

@@ -27,20 +27,20 @@ class PassVelocityHistogram {
     void add(double velocity_m_per_s, int time_bin, double value) {
         const auto bin = axis_.bin_of(velocity_m_per_s);
         if (!bin) return;
-        const auto place =
+        const auto index =
             static_cast<std::size_t>(axis_.with_time ? *bin * num_time_bins_ + time_bin : *bin);
-        if (values_[place] == 0.0) touched_.push_back(place);
-        values_[place] += value;
+        if (values_[index] == 0.0) touched_.push_back(index);
+        values_[index] += value;
     }
 
     /// As PassHistogram::drain() for a single channel.
     template <class VisitValues, class VisitTotals>
     void drain(VisitValues&& visit_values, VisitTotals&& visit_totals) {
-        for (const std::size_t place : touched_) {
-            const std::span<const double> value{values_.data() + place, 1};
-            visit_values(place, value);
-            visit_totals(place, value);
-            values_[place] = 0.0;
+        for (const std::size_t index : touched_) {
+            const std::span<const double> value{values_.data() + index, 1};
+            visit_values(index, value);
+            visit_totals(index, value);
+            values_[index] = 0.0;
         }
         touched_.clear();
     }
@@ -61,7 +61,7 @@ class PassHistogram {
     PassHistogram(const core::HistogramAxes& axes, GateShape gate, int num_channels);
 
     /// Adds a contribution of a path, weighted by the gate.
-    void add(int channel, const PathExtent& path, double value);
+    void add(int channel, const OpticalPath& path, double value);
     /// Adds a contribution that is already weighted by the gate to a bin.
     void add_to_bin(int channel, int bin, double velocity_m_per_s, double value);
     /// Path lengths that it does not admit count nowhere.

@@ -38,13 +38,13 @@ StoppingRule::StoppingRule(const RenderSettings& settings,
       next_look_(kMinPasses),
       predicted_passes_(kMinPasses) {}
 
-double StoppingRule::share_done(int passes, double elapsed_s, const TransientAccumulator& sums) {
+double StoppingRule::fraction_done(int passes, double elapsed_s, const TransientAccumulator& sums) {
     if (seconds_) return std::min(1.0, elapsed_s / *seconds_);
-    if (target_) return share_of_target(passes, sums);
+    if (target_) return fraction_of_target(passes, sums);
     return static_cast<double>(passes) / passes_for_samples_;
 }
 
-double StoppingRule::share_of_target(int passes, const TransientAccumulator& sums) {
+double StoppingRule::fraction_of_target(int passes, const TransientAccumulator& sums) {
     if (passes >= next_look_) {
         const auto norms = sums.squared_norms(passes, precomputed_.transient);
         const double allowed = allowed_noise(norms.signal, *target_, precomputed_);

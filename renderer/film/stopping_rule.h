@@ -40,11 +40,11 @@ class StoppingRule {
     /// To be called after each pass.
     ///
     /// elapsed_s   since the first pass began
-    /// returns     the share of the work done so far; 1: enough
-    double share_done(int passes, double elapsed_s, const TransientAccumulator& sums);
+    /// returns     the fraction of the work done so far; 1: enough
+    double fraction_done(int passes, double elapsed_s, const TransientAccumulator& sums);
 
  private:
-    double share_of_target(int passes, const TransientAccumulator& sums);
+    double fraction_of_target(int passes, const TransientAccumulator& sums);
 
     std::optional<double> seconds_;
     std::optional<double> target_;

@@ -14,7 +14,7 @@ namespace renderer {
 ///
 /// The rate is the sum over segments of u . (v_end - v_start), u along the segment, since
 /// d|r|/dt = r/|r| . dr/dt.
-struct PathExtent {
+struct OpticalPath {
     double opl_m = 0.0;
     double velocity_m_per_s = 0.0;
 
@@ -80,7 +80,7 @@ struct PathGate {
     TimeGate time;
     std::optional<VelocityGate> velocity;
 
-    double weight(const PathExtent& path) const {
+    double weight(const OpticalPath& path) const {
         if (velocity && !velocity->contains(path.velocity_m_per_s)) return 0.0;
         return time.weight(path.opl_m);
     }

@@ -69,7 +69,7 @@ void add_crossings(const Vec2& start,
     crossings.entering[crossings.num_entering++] = at((root - b) / a);
 }
 
-// Density over the shares of all arcs: uniform, or a Cauchy distribution cut off at 0 and 1.
+// Density over the fractions of all arcs: uniform, or a Cauchy distribution cut off at 0 and 1.
 class ArcDensity {
  public:
     ArcDensity(const FocusPair& foci,
@@ -78,14 +78,14 @@ class ArcDensity {
                const ConnectionLobe* lobe) {
         if (lobe == nullptr) return;
         const Vec2 nearest = section.angle_of(lobe->point);
-        const Vec3 leg = section.point(nearest) - foci.a;
-        const double distance = leg.norm();
-        const Vec3 direction = leg / distance;
+        const Vec3 segment = section.point(nearest) - foci.a;
+        const double distance = segment.norm();
+        const Vec3 direction = segment / distance;
         const Vec3 tangent = section.tangent(nearest);
-        const double turn_per_share =  // as seen from the focus [rad]
+        const double turn_per_fraction =  // as seen from the focus [rad]
             arcs.total_rad() * (tangent - direction * direction.dot(tangent)).norm() / distance;
         const double width_rad = std::hypot(lobe->width_rad, (direction - lobe->direction).norm());
-        scale_ = std::max(width_rad / turn_per_share, kNarrowest);  // stays what is not a number
+        scale_ = std::max(width_rad / turn_per_fraction, kNarrowest);  // stays what is not a number
         if (!(scale_ < kWidest)) return;
         is_uniform_ = false;
         middle_ = arcs.invert(nearest);
@@ -97,9 +97,9 @@ class ArcDensity {
         if (is_uniform_) return u;
         return std::clamp(middle_ + scale_ * std::tan(begin_ + u * span_), 0.0, core::kBelowOne);
     }
-    double pdf(double share) const {
+    double pdf(double fraction) const {
         if (is_uniform_) return 1.0;
-        const double off = (share - middle_) / scale_;
+        const double off = (fraction - middle_) / scale_;
         return 1.0 / (scale_ * span_ * (1.0 + off * off));
     }
 
@@ -271,12 +271,12 @@ std::optional<EllipsoidalConnection> sample_ellipsoid(
     const EllipsoidArcs arcs(*section, facet);
     if (!(arcs.total_rad() > 0.0)) return std::nullopt;
     const ArcDensity density(foci, *section, arcs, lobe);
-    const double share = density.sample(u);
-    const Vec2 angle = arcs.sample(share);
+    const double fraction = density.sample(u);
+    const Vec2 angle = arcs.sample(fraction);
     EllipsoidalConnection connection;
     connection.position = section->point(angle);
     connection.pdf_area_per_pdf_opl =
-        density.pdf(share) /
+        density.pdf(fraction) /
         (arcs.total_rad() * section->area_per_opl_and_angle(connection.position, angle));
     if (!(connection.pdf_area_per_pdf_opl > 0.0)) return std::nullopt;
     return connection;

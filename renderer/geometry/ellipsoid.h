@@ -12,11 +12,11 @@ struct FocusPair {
     core::Vec3 a;
     core::Vec3 b;
 
-    /// Length of the legs a -> x -> b [m].
+    /// Length of the segments a -> x -> b [m].
     double opl_m(const core::Vec3& x) const { return (x - a).norm() + (x - b).norm(); }
 };
 
-/// Shortest and longest length of the legs over some surface [m].
+/// Shortest and longest length of the segments over some surface [m].
 struct OplBand {
     double low_m = 0.0;
     double high_m = 0.0;
@@ -27,7 +27,7 @@ struct OplBand {
 /// Bounds of the length over a facet: the longest is exact, the shortest a lower bound.
 OplBand opl_band(const FocusPair& foci, const Facet& facet);
 
-/// A closed curve: the points of a plane whose legs have one length, by an angle theta.
+/// A closed curve: the points of a plane whose segments have one length, by an angle theta.
 ///
 /// The map that turns the ellipsoid into the unit sphere turns the curve into a circle; theta runs
 /// along it from the image of the facet's first edge. That start is the same world direction for
@@ -36,7 +36,7 @@ OplBand opl_band(const FocusPair& foci, const Facet& facet);
 class EllipsoidSection {
  public:
     /// foci     fixed neighbours, in any position, also equal
-    /// opl_m    length of the legs [m]
+    /// opl_m    length of the segments [m]
     /// plane    facet whose plane, not only its triangle, is cut
     /// returns  nothing when the ellipsoid misses the plane or touches it in little more than a
     ///          point, or when the length does not exceed the distance of the foci
@@ -90,7 +90,7 @@ class EllipsoidArcs {
     EllipsoidArcs(const EllipsoidSection& section, const Facet& facet);
 
     double total_rad() const { return total_rad_; }
-    /// (cos theta, sin theta) at the share u of [0, 1) of all arcs; total_rad() must not be 0.
+    /// (cos theta, sin theta) at the fraction u of [0, 1) of all arcs; total_rad() must not be 0.
     core::Vec2 sample(double u) const;
     /// The u that sample() maps to an angle; clamped to the nearer end between arcs.
     double invert(const core::Vec2& angle) const;
@@ -105,7 +105,7 @@ class EllipsoidArcs {
     double total_rad_ = 0.0;
 };
 
-/// A vertex whose two legs have the requested length.
+/// A vertex whose two segments have the requested length.
 struct EllipsoidalConnection {
     core::Vec3 position;
     /// Its density by area for a density of the length of 1 [1/m]: times pdf_opl it is pdf_area.
@@ -119,7 +119,7 @@ struct ConnectionLobe {
     double width_rad = 0.0;  ///< angle at which the lobe has fallen to about a half
 };
 
-/// Samples a vertex on a facet whose two legs have exactly the requested length.
+/// Samples a vertex on a facet whose two segments have exactly the requested length.
 ///
 /// foci      fixed neighbours of the vertex
 /// opl_m     required |a - x| + |x - b| [m]

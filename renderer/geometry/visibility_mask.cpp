@@ -35,9 +35,9 @@ constexpr std::array<Barycentric, 16> make_centers() {
 
 constexpr std::array<Barycentric, 16> kCenters = make_centers();
 
-// With M_j the mean over the triangle of [visible] b_j, f = M_0 + M_1 + M_2 the visible share, and
-// mean(b_i b_j) = (1 + delta_ij)/12, the linear function with these moments is v_j = 12 M_j - 3 f.
-// Every bit contributes its share to the sum; the table holds four bits at a time.
+// With M_j the mean over the triangle of [visible] b_j, f = M_0 + M_1 + M_2 the visible fraction,
+// and mean(b_i b_j) = (1 + delta_ij)/12, the linear function with these moments is v_j = 12 M_j - 3
+// f. Every bit contributes its part to the sum; the table holds four bits at a time.
 using NibbleTable = std::array<std::array<Barycentric, 16>, 4>;
 
 constexpr NibbleTable make_table() {
@@ -64,18 +64,18 @@ const std::array<Barycentric, 16>& centers_of_bits() {
     return kCenters;
 }
 
-Barycentric visible_share(VisibilityMask mask) {
-    Barycentric share{};
+Barycentric visible_fraction(VisibilityMask mask) {
+    Barycentric fraction{};
     for (std::size_t quarter = 0; quarter < 4; ++quarter) {
         const Barycentric& part = kTable[quarter][mask >> (4 * quarter) & 15U];
-        for (std::size_t k = 0; k < 3; ++k) share[k] += part[k];
+        for (std::size_t k = 0; k < 3; ++k) fraction[k] += part[k];
     }
-    const double mean = (share[0] + share[1] + share[2]) / 3.0;
-    const double lowest = std::min({share[0], share[1], share[2]});
+    const double mean = (fraction[0] + fraction[1] + fraction[2]) / 3.0;
+    const double lowest = std::min({fraction[0], fraction[1], fraction[2]});
     if (lowest < 0.0) {
-        for (double& value : share) value = mean + mean / (mean - lowest) * (value - mean);
+        for (double& value : fraction) value = mean + mean / (mean - lowest) * (value - mean);
     }
-    return share;
+    return fraction;
 }
 
 }  // namespace renderer

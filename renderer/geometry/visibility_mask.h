@@ -18,6 +18,6 @@ const std::array<std::array<double, 3>, 16>& centers_of_bits();
 
 /// The linear function with the integral and the first moments of the visible part's indicator,
 /// flattened so that it is nowhere negative: its values at the three corners.
-std::array<double, 3> visible_share(VisibilityMask mask);
+std::array<double, 3> visible_fraction(VisibilityMask mask);
 
 }  // namespace renderer

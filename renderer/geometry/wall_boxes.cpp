@@ -60,8 +60,8 @@ WallBoxes::WallBoxes(const core::WallScan& scan, const Vec3& origin, double roun
             slack_m_ = std::max(slack_m_, diagonal);
         }
     }
-    const auto [least, most] = core::device_leg_range_m(scan);
-    device_legs_ = {least, most};
+    const auto [least, most] = core::device_segment_range_m(scan);
+    device_segments_ = {least, most};
     find_planes(scan.sensing, origin, rounding_m);
     if (!confocal_) find_planes(scan.illumination, origin, rounding_m);
     if (planes_.size() == 1) plane_ = planes_.front();
@@ -115,7 +115,7 @@ LengthBounds WallBoxes::bounds(const Boxes& boxes, const Vec3& center, double ra
     return {std::max(0.0, std::sqrt(least) - radius), std::sqrt(farthest.maxCoeff()) + radius};
 }
 
-LegBounds WallBoxes::legs(const Vec3& center, double radius) const {
+SegmentBounds WallBoxes::segments(const Vec3& center, double radius) const {
     const LengthBounds sensor = bounds(sensor_, center, radius);
     return {confocal_ ? sensor : bounds(light_, center, radius), sensor};
 }

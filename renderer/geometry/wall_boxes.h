@@ -16,7 +16,7 @@ struct LengthBounds {
 };
 
 /// Distances of a sphere's points from all illumination and from all sensing points.
-struct LegBounds {
+struct SegmentBounds {
     LengthBounds light;
     LengthBounds sensor;
 };
@@ -28,15 +28,15 @@ class WallBoxes {
     /// rounding_m   of the positions, by which points of one plane may lie beside it
     WallBoxes(const core::WallScan& scan, const core::Vec3& origin, double rounding_m);
 
-    LegBounds legs(const core::Vec3& center, double radius) const;
-    /// The exact least distances from points to a sphere, which legs() only bounds.
+    SegmentBounds segments(const core::Vec3& center, double radius) const;
+    /// The exact least distances from points to a sphere, which segments() only bounds.
     std::pair<double, double> nearest_light_and_sensor_m(const core::Vec3& center,
                                                          double radius) const;
     /// No point is farther than this from the nearest corner of its box [m].
     double slack_m() const { return slack_m_; }
 
-    /// Bounds of the lengths of the device legs of all pairs.
-    const LengthBounds& device_legs() const { return device_legs_; }
+    /// Bounds of the lengths of the device segments of all pairs.
+    const LengthBounds& device_segments() const { return device_segments_; }
 
     /// True when a sphere lies behind all wall points' tangent planes.
     bool is_behind(const core::Vec3& center, double radius) const;
@@ -60,7 +60,7 @@ class WallBoxes {
     Boxes light_;
     Boxes sensor_;
     double slack_m_ = 0.0;
-    LengthBounds device_legs_;
+    LengthBounds device_segments_;
     std::vector<std::pair<core::Vec3, double>> planes_;  ///< distinct tangent planes
     std::optional<std::pair<core::Vec3, double>> plane_;
 };

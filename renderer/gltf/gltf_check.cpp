@@ -100,7 +100,7 @@ class GltfChecker {
         const std::string kTextureTransform =
             "materials[].pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.";
         const struct {
-            std::string place;  ///< as check() reads it
+            std::string key_path;  ///< as check() reads it
             Allowed allowed;
         } kRules[] = {
             {"extensionsRequired[]", a_text()},
@@ -172,7 +172,7 @@ class GltfChecker {
             {"samplers[].wrapS", count_from(0)},
             {"samplers[].wrapT", count_from(0)},
         };
-        for (const auto& rule : kRules) check(root_, "", rule.place, rule.allowed);
+        for (const auto& rule : kRules) check(root_, "", rule.key_path, rule.allowed);
     }
 
     std::size_t count_of(const char* array) const {
@@ -201,35 +201,35 @@ class GltfChecker {
     ///         object; `!` marks keys that must be there, others may be missing
     void check(const Json& owner,
                const std::string& where,
-               std::string_view place,
+               std::string_view key_path,
                const Allowed& allowed) const {
-        if (place.empty()) {
+        if (key_path.empty()) {
             if (!allowed.holds(owner)) fail(where, owner, allowed.text);
             return;
         }
-        if (place.starts_with("[]")) {
-            place.remove_prefix(2);
+        if (key_path.starts_with("[]")) {
+            key_path.remove_prefix(2);
             if (!owner.is_array()) fail(where, owner, "a list");
             for (std::size_t i = 0; i < owner.size(); ++i) {
                 const std::string item = where + "[" + std::to_string(i) + "]";
-                check(owner[i], place.empty() ? where : item, place, allowed);
+                check(owner[i], key_path.empty() ? where : item, key_path, allowed);
             }
             return;
         }
-        if (place.starts_with('.')) place.remove_prefix(1);
+        if (key_path.starts_with('.')) key_path.remove_prefix(1);
         if (!owner.is_object()) fail(where, owner, "an object");
-        const std::string key(place.substr(0, place.find_first_of("!.[")));
-        place.remove_prefix(key.size());
+        const std::string key(key_path.substr(0, key_path.find_first_of("!.[")));
+        key_path.remove_prefix(key.size());
         if (key == "*") {
             for (const auto& [name, item] : owner.items()) {
-                check(item, core::join_key(where, name), place, allowed);
+                check(item, core::join_key(where, name), key_path, allowed);
             }
             return;
         }
-        const bool is_required = place.starts_with('!');
-        if (is_required) place.remove_prefix(1);
+        const bool is_required = key_path.starts_with('!');
+        if (is_required) key_path.remove_prefix(1);
         if (const auto value = owner.find(key); value != owner.end()) {
-            check(*value, core::join_key(where, key), place, allowed);
+            check(*value, core::join_key(where, key), key_path, allowed);
         } else if (is_required) {
             throw core::Error(path_ + ": " + where, "has no " + key, "glTF 2.0 requires it");
         }
@@ -256,18 +256,18 @@ class GltfChecker {
         }
         if (!value.is_object()) return;
         for (const auto& [key, item] : value.items()) {
-            const std::string place = core::join_key(where, key);
+            const std::string key_path = core::join_key(where, key);
             if (key == "extras" && item.is_object()) {
                 if (is_node_or_material(where)) continue;
                 for (const auto& [name, unused] : item.items()) {
                     if (name.starts_with("nlos_")) {
-                        throw core::Error(path_ + ": " + core::join_key(place, name),
+                        throw core::Error(path_ + ": " + core::join_key(key_path, name),
                                           "is not on a node or a material",
                                           "nlos_ extras belong on nodes and materials");
                     }
                 }
             } else {
-                check_extras(item, place);
+                check_extras(item, key_path);
             }
         }
     }

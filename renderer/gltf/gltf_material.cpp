@@ -25,8 +25,8 @@ TextureWrap wrap_from_gltf(int wrap, const std::string& where) {
     return static_cast<TextureWrap>(found - kGltfWraps.begin());
 }
 
-/// Width and height that a PNG or JPEG file states; nothing where it states none.
-std::optional<std::array<std::uint64_t, 2>> stated_size(std::span<const unsigned char> bytes) {
+/// Width and height that a PNG or JPEG file gives; nothing where it gives none.
+std::optional<std::array<std::uint64_t, 2>> declared_size(std::span<const unsigned char> bytes) {
     const auto number = [&](std::size_t at, std::size_t count) {
         std::uint64_t value = 0;
         for (std::size_t i = 0; i < count; ++i) value = value << 8 | bytes[at + i];
@@ -50,7 +50,7 @@ std::optional<std::array<std::uint64_t, 2>> stated_size(std::span<const unsigned
 /// A few bytes can inflate to any number of texels.
 void check_texels(std::span<const unsigned char> bytes, const std::string& where) {
     constexpr std::uint64_t kMostTexels = 8192 * 8192;
-    const auto size = stated_size(bytes);
+    const auto size = declared_size(bytes);
     if (!size || (*size)[0] == 0 || (*size)[1] <= kMostTexels / (*size)[0]) return;
     throw core::Error(where,
                       fmt::format("has {} x {} texels", (*size)[0], (*size)[1]),

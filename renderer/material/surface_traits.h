@@ -24,7 +24,7 @@ struct GltfSurface {
     bool operator==(const GltfSurface&) const = default;
 };
 
-/// What estimators, fits and files ask of a surface model. Every model states its own.
+/// What estimators, fits and files ask of a surface model. Every model gives its own.
 struct SurfaceTraits {
     std::string_view name;  ///< in scene.json
     /// The value is albedo/pi in all directions, and samples are distributed as the cosine.

@@ -48,12 +48,12 @@ Material material_of(const core::FileMaterial& source, const std::string& path) 
 }
 
 /// Of each vertex the first one at the same place, to the last bit.
-std::vector<std::uint32_t> first_at_same_place(const std::vector<Vec3>& vertices) {
+std::vector<std::uint32_t> first_at_same_position(const std::vector<Vec3>& vertices) {
     constexpr std::uint32_t kFree = ~0U;
-    const auto hash = [](const Vec3& place) {
+    const auto hash = [](const Vec3& position) {
         constexpr std::size_t kGolden = 0x9e3779b97f4a7c15;
         std::size_t bits = 0;
-        for (const double coordinate : place) {  // 0 and -0 are one place
+        for (const double coordinate : position) {  // 0 and -0 are one place
             bits = std::rotl(bits ^ std::bit_cast<std::size_t>(coordinate + 0.0), 29) * kGolden;
         }
         return bits ^ (bits >> 32);
@@ -74,14 +74,14 @@ std::vector<std::uint32_t> first_at_same_place(const std::vector<Vec3>& vertices
 
 using Triangles = std::span<const std::array<std::uint32_t, 3>>;
 
-/// Cuts parts out of a file's mesh. Corners at one place are one vertex of a part, in the order of
-/// their first use.
+/// Cuts parts out of a file's mesh. Corners at one position are one vertex of a part, in the order
+/// of their first use.
 class PartCutter {
  public:
     PartCutter(const std::vector<Vec3>& vertices, const core::Mat3& world_from_file)
         : vertices_(vertices),
           world_from_file_(world_from_file),
-          first_(first_at_same_place(vertices)),
+          first_(first_at_same_position(vertices)),
           number_(vertices.size(), kNone) {}
 
     core::TriangleMesh cut(Triangles triangles) {

@@ -58,7 +58,7 @@ FacetTraits::FacetTraits(const Scene& scene, const std::vector<bool>& adds_third
 }
 
 void FirstVertexBatch::draw_by_area(const AreaSampler& sampler, AreaDraws& draws) {
-    // Lanes beyond the last number belong to no share.
+    // Lanes beyond the last number belong to no interval.
     alignas(64) std::array<double, kPadded> u1;
     alignas(64) std::array<double, kPadded> u2;
     u1.fill(1.0);
@@ -71,18 +71,19 @@ void FirstVertexBatch::draw_by_area(const AreaSampler& sampler, AreaDraws& draws
         u2[i] = u.y();
     }
     for (int begin = 0; begin < size;) {
-        const auto share = sampler.share_from(draws.hint, u1[begin]);
-        begin += add_on_facet(sampler.facet_of(share), share, u1.data() + begin, u2.data() + begin);
-        draws.hint = share.index;
+        const auto interval = sampler.interval_from(draws.hint, u1[begin]);
+        begin += add_on_facet(
+            sampler.facet_of(interval), interval, u1.data() + begin, u2.data() + begin);
+        draws.hint = interval.index;
     }
     draws.begin += size;
 }
 
-// Appends points on a facet for increasing u1, as long as u1 lies in its share.
+// Appends points on a facet for increasing u1, as long as u1 lies in its interval.
 //
 // returns   their number
 int FirstVertexBatch::add_on_facet(std::uint32_t facet,
-                                   const core::DiscreteDistribution::Share& share,
+                                   const core::DiscreteDistribution::Interval& interval,
                                    const double* u1,
                                    const double* u2) {
     using Lanes = Eigen::Array<double, kLanes, 1>;
@@ -93,10 +94,10 @@ int FirstVertexBatch::add_on_facet(std::uint32_t facet,
     const int begin = count_;
     int inside = kLanes;
     for (int i = 0; inside == kLanes; i += kLanes) {
-        // As Share::remap() and core::sample_triangle(), except that rounding may cross an edge.
+        // As Interval::remap() and core::sample_triangle(), except that rounding may cross an edge.
         const Eigen::Map<const Lanes> u(u1 + i);
         const Eigen::Map<const Lanes> v(u2 + i);
-        Lanes root = (u - share.begin) * share.inverse_width;
+        Lanes root = (u - interval.begin) * interval.inverse_width;
         for (double& value : root) value = std::sqrt(value);
         const Lanes b1 = root * (1.0 - v);
         const Lanes b2 = root * v;
@@ -110,7 +111,7 @@ int FirstVertexBatch::add_on_facet(std::uint32_t facet,
         at(constant_bsdf_) = constant;
         std::fill_n(facet_ + count_, kLanes, facet);
         inside = 0;
-        for (int lane = 0; lane < kLanes; ++lane) inside += u1[i + lane] < share.end ? 1 : 0;
+        for (int lane = 0; lane < kLanes; ++lane) inside += u1[i + lane] < interval.end ? 1 : 0;
         count_ += inside;
     }
     return count_ - begin;
@@ -135,20 +136,20 @@ std::uint64_t FirstVertexBatch::draw_by_direction(EndpointDirectionSampler& dire
 }
 
 void FirstVertexBatch::evaluate(const PathEndpoints& ends, const Draw& draw) {
-    ends.coincide ? evaluate_legs<true>(ends, draw) : evaluate_legs<false>(ends, draw);
+    ends.coincide ? evaluate_segments<true>(ends, draw) : evaluate_segments<false>(ends, draw);
 }
 
-// Where both ends coincide, so do the legs, which saves a square root and a division.
+// Where both ends coincide, so do the segments, which saves a square root and a division.
 template <bool kCoincide>
-void FirstVertexBatch::evaluate_legs(const PathEndpoints& ends, const Draw& draw) {
+void FirstVertexBatch::evaluate_segments(const PathEndpoints& ends, const Draw& draw) {
     const End sensor(ends.sensor);
     const End light(ends.light);
-    const double pdf_by_area = draw.area_share * draw.hidden_pdf_area;
+    const double pdf_by_area = draw.area_fraction * draw.hidden_pdf_area;
     // Cosine-weighted directions from a wall, uniform ones from an isotropic end.
     const double pdf_by_direction =
-        (1.0 - draw.area_share) / (ends.sensor.isotropic ? 4.0 * kPi : kPi);
+        (1.0 - draw.area_fraction) / (ends.sensor.isotropic ? 4.0 * kPi : kPi);
     const double sensor_strength = draw.weight * sensor.strength;
-    const double legs = ends.device_legs_m;
+    const double segments = ends.device_segments_m;
     const int count = count_;
     for (int i = 0; i < count; ++i) {
         const double dx = x_[i] - sensor.x;
@@ -176,9 +177,9 @@ void FirstVertexBatch::evaluate_legs(const PathEndpoints& ends, const Draw& draw
         const double out =
             (normal_x_[i] * lx + normal_y_[i] * ly + normal_z_[i] * lz) * light_inverse;
         const double in = normal_x_[i] * dx + normal_y_[i] * dy + normal_z_[i] * dz;
-        // Facets reflect on both sides, and both legs must lie on the same side.
+        // Facets reflect on both sides, and both segments must lie on the same side.
         const double reflected = in * out < 0.0 ? constant_bsdf_[i] * std::abs(out) : 0.0;
-        opl_m_[i] = distance + light_distance + legs;
+        opl_m_[i] = distance + light_distance + segments;
         contribution_[i] = throughput_[i] * reflected * light.strength * light_shape *
                            light_inverse * light_inverse;
     }
@@ -289,7 +290,7 @@ std::span<const double> FirstVertexBatch::find_velocities(const PathEndpoints& e
     for (int i = 0; i < count_; ++i) {
         const Vec3 position(x_[i], y_[i], z_[i]);
         const Vec3& velocity = scene_.velocity_m_per_s(facet_[i]);
-        PathExtent path;
+        OpticalPath path;
         path.add_segment(position - ends.sensor.position, Vec3::Zero(), velocity);
         path.add_segment(ends.light.position - position, velocity, Vec3::Zero());
         velocity_[i] = path.velocity_m_per_s;
@@ -300,9 +301,9 @@ std::span<const double> FirstVertexBatch::find_velocities(const PathEndpoints& e
 PathVertex FirstVertexBatch::vertex(int i, const PathEndpoint& sensor) const {
     PathVertex vertex = vertex_at(scene_, point(i), Vec3::Zero());
     const Vec3 to_sensor = sensor.position - vertex.point.position;
-    vertex.extent.add_segment(
+    vertex.optical_path.add_segment(
         -to_sensor, Vec3::Zero(), scene_.velocity_m_per_s(vertex.point.facet));
-    vertex.to_previous = to_sensor / vertex.extent.opl_m;
+    vertex.to_previous = to_sensor / vertex.optical_path.opl_m;
     vertex.throughput = throughput_[i];
     return vertex;
 }

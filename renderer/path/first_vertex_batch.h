@@ -47,7 +47,7 @@ class FirstVertexBatch {
     /// How the vertices were drawn.
     struct Draw {
         double weight = 1.0;           ///< of one path
-        double area_share = 1.0;       ///< share drawn by hidden area; the others by direction
+        double area_fraction = 1.0;    ///< fraction drawn by hidden area; the others by direction
         double hidden_pdf_area = 0.0;  ///< density of the former [1/m^2]
     };
 
@@ -126,7 +126,7 @@ class FirstVertexBatch {
     void keep_useful();
     /// Sets contributions of path lengths that the gate does not admit to 0.
     ///
-    /// returns   the share of all contributions that count; 0 when there are none
+    /// returns   the fraction of all contributions that count; 0 when there are none
     double leave_out_other_lengths(const TimeGate& gate);
     /// Drops vertices by systematic sampling in their order (source [Madow1949]). Those that
     /// contribute at least a step are kept; of the others as many as have steps in their sum, each
@@ -164,12 +164,12 @@ class FirstVertexBatch {
  private:
     std::size_t size_t_count() const { return static_cast<std::size_t>(count_); }
     int add_on_facet(std::uint32_t facet,
-                     const core::DiscreteDistribution::Share& share,
+                     const core::DiscreteDistribution::Interval& interval,
                      const double* u1,
                      const double* u2);
     std::uint64_t trace_from(const PathEndpoint& end, int first);
     template <bool kCoincide>
-    void evaluate_legs(const PathEndpoints& ends, const Draw& draw);
+    void evaluate_segments(const PathEndpoints& ends, const Draw& draw);
     template <class Predicate>
     void keep_if(const Predicate& keep);
 

@@ -46,7 +46,7 @@ Vec3 sample_direction_from_light(const Scene& scene, const PathEndpoint& light, 
 }
 
 LightSubpaths::LightSubpaths(const Scene& scene,
-                             const SurfaceWalk& walk,
+                             const RandomWalk& walk,
                              const PathEndpoint& light,
                              int num_walks,
                              int max_vertices,
@@ -84,9 +84,9 @@ LightSubpaths::Walked LightSubpaths::trace_walk(const Vec2& u,
     const double pdf_first = pdf_area_from_light(*scene_, light_, *hit);
     if (!(pdf_first > 0.0)) return walked;
     vertex.throughput = light_.strength * (light_.isotropic ? 4.0 * kPi : kPi);
-    vertex.extent.add_segment(hit->position - light_.position,
-                              light_.velocity_m_per_s,
-                              scene_->velocity_m_per_s(hit->facet));
+    vertex.optical_path.add_segment(hit->position - light_.position,
+                                    light_.velocity_m_per_s,
+                                    scene_->velocity_m_per_s(hit->facet));
     double ratio = 1.0 / pdf_first;
     walked.steps.push_back({vertex, ratio});
     while (static_cast<int>(walked.steps.size()) < max_vertices) {
@@ -124,8 +124,8 @@ void LightSubpaths::store(const Walked& walked) {
                                                      normal.y(),
                                                      normal.z(),
                                                      vertex.throughput * constant.value_or(1.0),
-                                                     vertex.extent.opl_m,
-                                                     vertex.extent.velocity_m_per_s,
+                                                     vertex.optical_path.opl_m,
+                                                     vertex.optical_path.velocity_m_per_s,
                                                      ratio * step};
         for (std::size_t c = 0; c < kNumColumns; ++c) columns_[c].push_back(values[c]);
         vertices_.push_back(vertex);

@@ -3,7 +3,7 @@
 
 #include "renderer/core/random.h"
 #include "renderer/path/path_vertex.h"
-#include "renderer/path/surface_walk.h"
+#include "renderer/path/random_walk.h"
 
 #include <array>
 #include <cstddef>
@@ -56,7 +56,7 @@ class LightSubpaths {
     /// max_vertices   of a walk
     /// rng            owned by this pass
     LightSubpaths(const Scene& scene,
-                  const SurfaceWalk& walk,
+                  const RandomWalk& walk,
                   const PathEndpoint& light,
                   int num_walks,
                   int max_vertices,
@@ -92,7 +92,7 @@ class LightSubpaths {
     void store(const Walked& walked);
 
     const Scene* scene_;
-    const SurfaceWalk* walk_;
+    const RandomWalk* walk_;
     PathEndpoint light_;
     int max_vertices_;
     bool any_varies_ = false;

@@ -12,7 +12,7 @@ namespace renderer {
 namespace {
 
 // Vertices that the hidden area draws for pixels are those that light subpaths draw better.
-constexpr double kAreaShareOfPixels = 0.0;
+constexpr double kAreaFractionOfPixels = 0.0;
 
 // Enough that what pixels share does not show in their noise, and few enough to cost little beside
 // them and to stay in the cache.
@@ -46,9 +46,9 @@ class PathTracer::Walk : public PairWalk {
         : PairWalk(tracer, ends, rng, histogram), tracer_(tracer) {}
 
     void trace_samples(int count) override {
-        // The number of each kind is rounded at random, so that its mean is the share that the
+        // The number of each kind is rounded at random, so that its mean is the fraction that the
         // weights assume.
-        const double expected = count * kAreaShareFromWall;
+        const double expected = count * kAreaFractionFromWall;
         const int num_area = std::min(count, static_cast<int>(expected + rng_.uniform()));
         trace_walks(num_area, count - num_area, 1.0 / count);
     }
@@ -74,19 +74,20 @@ class PathTracer::Walk : public PairWalk {
                             const Use& use) {
         const core::Vec2 shift(rng_.uniform(), rng_.uniform());
         if (sensor_pairs.first_order() > tracer_.max_order_) return;
-        std::array<core::Vec2, SensorPairs::kAtOnce> places;
+        std::array<core::Vec2, SensorPairs::kAtOnce> positions;
         for (int begin = 0; begin < count; begin += SensorPairs::kAtOnce) {
             const int size = std::min(SensorPairs::kAtOnce, count - begin);
             for (int i = 0; i < size; ++i) {
-                places[static_cast<std::size_t>(i)] = core::lattice_point(begin + i, count, shift);
+                positions[static_cast<std::size_t>(i)] =
+                    core::lattice_point(begin + i, count, shift);
             }
             first_vertices_.clear();
             sensor_pairs.find_first_vertices(
-                pixel, {places.data(), static_cast<std::size_t>(size)}, first_vertices_);
+                pixel, {positions.data(), static_cast<std::size_t>(size)}, first_vertices_);
             num_rays_ += static_cast<std::uint64_t>(size);
             for (PathVertex& vertex : first_vertices_) {
                 vertex.throughput *= 1.0 / count;
-                connect_to_light(vertex, tracer_.surface_walk_.connection_value(vertex, ends_));
+                connect_to_light(vertex, tracer_.random_walk_.connection_value(vertex, ends_));
                 use(vertex);
             }
         }
@@ -102,7 +103,7 @@ class PathTracer::Walk : public PairWalk {
                                        {tracer_.max_order_, tracer_.by_order_},
                                        rng_,
                                        histogram_,
-                                       waiting_);
+                                       shadow_rays_);
         // Systematic sampling: each vertex gets a walk with the probability of its split.
         double turn = rng_.uniform();
         for_first_vertices(sensor_pairs, pixel, count, [&](const PathVertex& vertex) {
@@ -117,7 +118,7 @@ class PathTracer::Walk : public PairWalk {
     }
 
     void extend(PathVertex vertex) override {
-        const SurfaceWalk& walk = tracer_.surface_walk_;
+        const RandomWalk& walk = tracer_.random_walk_;
         while (vertex.order < tracer_.max_order_) {
             if (!walk.survives(vertex, rng_)) return;
             if (!walk.draw_next(vertex, rng_, num_rays_)) return;
@@ -127,7 +128,7 @@ class PathTracer::Walk : public PairWalk {
 
     // The same for a pixel's paths, which light subpaths draw too.
     void extend_beside_connections(PathVertex vertex, const IndirectSplit& split) {
-        const SurfaceWalk& walk = tracer_.pixel_walk_;
+        const RandomWalk& walk = tracer_.pixel_walk_;
         SubpathDensity density(scene_, walk, ends_.light);
         vertex.throughput /= split.walks;
         while (vertex.order < tracer_.max_order_) {
@@ -147,7 +148,7 @@ class PathTracer::Walk : public PairWalk {
 
 PathTracer::PathTracer(const Scene& scene, const RenderSettings& settings, ThirdBounceScope scope)
     : Tracer(scene, settings, scope),
-      pixel_walk_(scene, settings.laser_spot_m2, kAreaShareOfPixels) {}
+      pixel_walk_(scene, settings.laser_spot_m2, kAreaFractionOfPixels) {}
 
 std::unique_ptr<const LightSubpaths> PathTracer::trace_subpaths(const SensorPairs& sensor_pairs,
                                                                 int num_samples,

@@ -19,7 +19,7 @@ namespace renderer {
 /// surfaces of both ends over the squared distance, and 0 where something is in the way. W is an
 /// end's factor without its cosine (PathEndpoint::factor() has both): albedo/pi on the wall. A
 /// pixel of an image has its paths begin at a camera, with the surface seen through a random point
-/// of the pixel as x_1. What of the path moves gives the velocity (PathExtent) beside the length.
+/// of the pixel as x_1. What of the path moves gives the velocity (OpticalPath) beside the length.
 ///
 /// The estimate. Paths are drawn with some density p(x) per area of their vertices, and each adds
 /// f(x) / p(x) to the bin of its length, whose mean is H(b). PathVertex::throughput is this
@@ -32,16 +32,16 @@ namespace renderer {
 ///    `endpoint_direction_sampler.h`).
 /// 2. Each is connected to l: a path of order 3. Large contributions get a shadow ray each; of the
 ///    small ones a systematic sample in proportion to their size (`systematic_sampler.h`).
-/// 3. Some continue, in proportion to throughput: SurfaceWalk::draw_next() in `surface_walk.h`
+/// 3. Some continue, in proportion to throughput: RandomWalk::draw_next() in `random_walk.h`
 ///    draws the next vertex by area or by the BSDF.
-/// 4. Every new vertex is connected to l (SurfaceWalk::connection_value()), which gives one path of
-///    each higher order. Shadow rays wait until they fill a packet (`waiting_connections.h`).
+/// 4. Every new vertex is connected to l (RandomWalk::connection_value()), which gives one path of
+///    each higher order. Shadow rays wait until they fill a packet (`shadow_ray_queue.h`).
 /// 5. From order 5 on Russian roulette ends walks where surfaces reflect little (survives()).
 ///
 /// Where MIS weights come from. A vertex x that either of two techniques may draw, with
 /// probabilities c_1 and c_2 and densities p_1 and p_2, is divided by c_1 p_1(x) + c_2 p_2(x),
 /// whichever drew it. That is the balance heuristic ([Veach1997], chapter 9) with one sample; no
-/// weight appears as a factor. SurfaceWalk::step_to() computes this density for later vertices,
+/// weight appears as a factor. RandomWalk::step_to() computes this density for later vertices,
 /// FirstVertexBatch::evaluate() for first ones. p_2 per area is the density of the direction times
 /// cosine over squared distance.
 ///
@@ -69,7 +69,7 @@ class PathTracer : public Tracer {
 
     class Walk;
 
-    SurfaceWalk pixel_walk_;  ///< of images, beside light subpaths
+    RandomWalk pixel_walk_;  ///< of images, beside light subpaths
 };
 
 }  // namespace renderer

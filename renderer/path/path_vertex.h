@@ -26,11 +26,11 @@ struct PathEndpoint {
     }
 };
 
-/// The two ends of a pair's paths, and the length of the legs to laser and detector.
+/// The two ends of a pair's paths, and the length of the segments to laser and detector.
 struct PathEndpoints {
     PathEndpoint sensor;
     PathEndpoint light;
-    double device_legs_m = 0.0;
+    double device_segments_m = 0.0;
     bool coincide = false;  ///< confocal: both ends see the same
 };
 
@@ -43,8 +43,8 @@ struct PathVertex {
     /// Throughput of the path up to here over the density of its vertices; includes the cosine at
     /// this vertex.
     double throughput = 0.0;
-    PathExtent extent;  ///< from the sensor point to here
-    int order = 3;      ///< bounces of the path that goes from here straight to the light
+    OpticalPath optical_path;  ///< from the sensor point to here
+    int order = 3;             ///< bounces of the path that goes from here straight to the light
 };
 
 /// A vertex at a point whose path is still to be described.

@@ -94,7 +94,7 @@ PathEndpoints SensorPairs::ends(std::size_t pair) const {
     const double albedo = scene_->wall_albedo();
     ends.sensor = wall_end(wall_->sensing, wall_->sensing_index(pair), albedo);
     ends.light = wall_end(wall_->illumination, wall_->illumination_index(pair), albedo);
-    ends.device_legs_m = wall_->device_legs_m(pair);
+    ends.device_segments_m = wall_->device_segments_m(pair);
     ends.coincide =
         ends.sensor.position == ends.light.position && ends.sensor.normal == ends.light.normal;
     return ends;
@@ -139,7 +139,7 @@ Vec3 SensorPairs::direction_through(std::size_t pixel, const core::Vec2& u) cons
 PathVertex SensorPairs::seen_vertex(const SurfacePoint& point, const Vec3& direction) const {
     PathVertex vertex = vertex_at(*scene_, point, -direction);
     vertex.throughput = 1.0;
-    vertex.extent.add_segment(
+    vertex.optical_path.add_segment(
         point.position - camera_->position_m, Vec3::Zero(), scene_->velocity_m_per_s(point.facet));
     vertex.order = first_order();
     return vertex;

@@ -51,12 +51,12 @@ double SubpathDensity::ratio() const {
 }
 
 SubpathConnections::SubpathConnections(const Scene& scene,
-                                       const SurfaceWalk& walk,
+                                       const RandomWalk& walk,
                                        const LightSubpaths& subpaths,
                                        const Orders& orders,
                                        core::Rng& rng,
                                        const PassHistogram& histogram,
-                                       WaitingConnections& waiting)
+                                       ShadowRayQueue& shadow_rays)
     : scene_(scene),
       walk_(walk),
       subpaths_(subpaths),
@@ -65,7 +65,7 @@ SubpathConnections::SubpathConnections(const Scene& scene,
       resolves_velocity_(histogram.resolves_velocity()),
       begin_m_(histogram.gate().begin_m()),
       end_m_(histogram.gate().end_m()),
-      waiting_(waiting),
+      shadow_rays_(shadow_rays),
       next_walk_(static_cast<int>(rng.uniform() * subpaths.num_walks())) {
     vertices_.reserve(kMaxVertices);
 }
@@ -141,10 +141,10 @@ void SubpathConnections::evaluate_range(const PathVertex& vertex,
     const double nx = normal.x(), ny = normal.y(), nz = normal.z();
     const double scale = vertex.throughput * constant_value(vertex.bsdf).value_or(0.0);
     const double connections = split.connections;
-    const double area_share = walk_.area_share(vertex);
-    const double by_area = split.walks * area_share * walk_.area_sampler().pdf_area();
-    const double by_direction = split.walks * (1.0 - area_share) / kPi;
-    const double opl_m = vertex.extent.opl_m;
+    const double area_fraction = walk_.area_fraction(vertex);
+    const double by_area = split.walks * area_fraction * walk_.area_sampler().pdf_area();
+    const double by_direction = split.walks * (1.0 - area_fraction) / kPi;
+    const double opl_m = vertex.optical_path.opl_m;
     for (std::size_t i = 0; i < count; ++i) {
         const double dx = x[i] - px;
         const double dy = y[i] - py;
@@ -229,7 +229,7 @@ void SubpathConnections::finish() {
 }
 
 // Candidates above the step between samples are all taken, the others with a probability of their
-// share of it.
+// fraction of it.
 void SubpathConnections::draw_shadow_rays() {
     const double* const values = candidates_.value.data();
     const double sum = std::accumulate(values, values + num_candidates_, 0.0);
@@ -250,17 +250,17 @@ void SubpathConnections::append(std::size_t candidate, double value) {
     const Vec3 position(at(LightSubpaths::kX), at(LightSubpaths::kY), at(LightSubpaths::kZ));
     const Vec3 normal(
         at(LightSubpaths::kNormalX), at(LightSubpaths::kNormalY), at(LightSubpaths::kNormalZ));
-    PathExtent extent{candidates_.opl_m[candidate], 0.0};
+    OpticalPath optical_path{candidates_.opl_m[candidate], 0.0};
     if (resolves_velocity_) {
-        PathExtent to_there = vertex.extent;
+        OpticalPath to_there = vertex.optical_path;
         to_there.add_segment(position - vertex.point.position,
                              scene_.velocity_m_per_s(vertex.point.facet),
                              scene_.velocity_m_per_s(subpaths_.vertex(index).point.facet));
-        extent.velocity_m_per_s = to_there.velocity_m_per_s + at(LightSubpaths::kVelocity);
+        optical_path.velocity_m_per_s = to_there.velocity_m_per_s + at(LightSubpaths::kVelocity);
     }
     const int channel = orders_.are_separate ? vertex.order + subpaths_.depth(index) - 1 : 0;
-    waiting_.add(
-        {vertex.point.position, vertex.normal}, {position, normal}, channel, extent, value);
+    shadow_rays_.add(
+        {vertex.point.position, vertex.normal}, {position, normal}, channel, optical_path, value);
 }
 
 }  // namespace renderer

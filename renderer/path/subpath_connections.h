@@ -3,7 +3,7 @@
 
 #include "renderer/film/pass_histogram.h"
 #include "renderer/path/light_subpaths.h"
-#include "renderer/path/waiting_connections.h"
+#include "renderer/path/shadow_ray_queue.h"
 
 namespace renderer {
 
@@ -24,7 +24,7 @@ struct IndirectSplit {
 /// Follows how much more often light subpaths draw the path of a walk than the walk itself does.
 class SubpathDensity {
  public:
-    SubpathDensity(const Scene& scene, const SurfaceWalk& walk, const PathEndpoint& light)
+    SubpathDensity(const Scene& scene, const RandomWalk& walk, const PathEndpoint& light)
         : scene_(&scene), walk_(&walk), light_(&light) {}
 
     /// To be called after every step of a walk from a first vertex.
@@ -36,7 +36,7 @@ class SubpathDensity {
 
  private:
     const Scene* scene_;
-    const SurfaceWalk* walk_;
+    const RandomWalk* walk_;
     const PathEndpoint* light_;
     int num_steps_ = 0;
     double ratio_ = 1.0;  ///< without the steps back from the last vertex
@@ -48,7 +48,7 @@ class SubpathDensity {
 ///
 /// Connections are computed without visibility for many candidates. Few of them get shadow rays:
 /// they are drawn by systematic sampling with probabilities proportional to what they contribute,
-/// in the order of path lengths, so that every bin gets its share (source [Veach1997], Russian
+/// in the order of path lengths, so that every bin gets its part (source [Veach1997], Russian
 /// roulette; [Madow1949], systematic sampling).
 class SubpathConnections {
  public:
@@ -60,12 +60,12 @@ class SubpathConnections {
 
     /// All must outlive this.
     SubpathConnections(const Scene& scene,
-                       const SurfaceWalk& walk,
+                       const RandomWalk& walk,
                        const LightSubpaths& subpaths,
                        const Orders& orders,
                        core::Rng& rng,
                        const PassHistogram& histogram,
-                       WaitingConnections& waiting);
+                       ShadowRayQueue& shadow_rays);
 
     /// Adds the indirect light of a vertex by connections to the next light subpaths.
     void connect(const PathVertex& vertex, const IndirectSplit& split);
@@ -113,14 +113,14 @@ class SubpathConnections {
     void append(std::size_t candidate, double value);
 
     const Scene& scene_;
-    const SurfaceWalk& walk_;
+    const RandomWalk& walk_;
     const LightSubpaths& subpaths_;
     Orders orders_;
     core::Rng& rng_;
     bool resolves_velocity_;
     double begin_m_;  ///< of lengths that the gate admits
     double end_m_;
-    WaitingConnections& waiting_;
+    ShadowRayQueue& shadow_rays_;
     int next_walk_;
 
     std::vector<PathVertex> vertices_;  ///< of the candidates

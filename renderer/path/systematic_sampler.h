@@ -5,7 +5,7 @@
 
 namespace renderer {
 
-/// Draws few of many values, in their order, so that any run of them gets its share (source
+/// Draws few of many values, in their order, so that any run of them gets its part (source
 /// [Madow1949], systematic sampling).
 class SystematicSampler {
  public:

@@ -29,7 +29,7 @@ Tracer::Tracer(const Scene& scene, const RenderSettings& settings, ThirdBounceSc
     : scene_(&scene),
       max_order_(settings.max_bounces),
       by_order_(settings.by_order),
-      surface_walk_(scene, settings.laser_spot_m2),
+      random_walk_(scene, settings.laser_spot_m2),
       facet_traits_(scene, objects_that_add(scene, scope)) {}
 
 std::uint64_t Tracer::trace(const PathEndpoints& ends,
@@ -71,14 +71,14 @@ PairWalk::PairWalk(const Tracer& tracer,
       rng_(rng),
       histogram_(histogram),
       first_(*tracer.scene_, tracer.facet_traits_),
-      waiting_(*tracer.scene_, histogram),
+      shadow_rays_(*tracer.scene_, histogram),
       tracer_(tracer) {}
 
 void PairWalk::trace_walks(int num_area, int num_directions, double weight) {
     EndpointDirectionSampler directions(scene_, ends_.sensor, num_directions, rng_);
     FirstVertexBatch::AreaDraws by_area(num_area, rng_);
     while (!by_area.done() || !directions.done()) {
-        num_rays_ += first_.draw(directions, tracer_.surface_walk_.area_sampler(), by_area);
+        num_rays_ += first_.draw(directions, tracer_.random_walk_.area_sampler(), by_area);
         finish_first_vertices(weight);
     }
 }
@@ -117,8 +117,8 @@ void PairWalk::draw_continued(double step_in_means) {
 }
 
 void PairWalk::evaluate_first_vertices(double weight) {
-    const SurfaceWalk& walk = tracer_.surface_walk_;
-    first_.evaluate(ends_, {weight, kAreaShareFromWall, walk.area_sampler().pdf_area()});
+    const RandomWalk& walk = tracer_.random_walk_;
+    first_.evaluate(ends_, {weight, kAreaFractionFromWall, walk.area_sampler().pdf_area()});
     for (int i = 0; i < first_.size() && tracer_.facet_traits_.any_varies(); ++i) {
         if (!tracer_.facet_traits_.varies(first_.facet(i))) continue;
         first_.set_contribution(i, walk.connection_value(first_.vertex(i, ends_.sensor), ends_));
@@ -135,15 +135,16 @@ void PairWalk::connect_first_vertices() {
 
 void PairWalk::connect_to_light(const PathVertex& vertex, double value) {
     if (!(value > 0.0)) return;
-    waiting_.add({vertex.point.position, vertex.normal},
-                 {ends_.light.position, ends_.light.normal},
-                 channel_of(vertex),
-                 tracer_.surface_walk_.extent_to_light(vertex, ends_),
-                 value);
+    shadow_rays_.add({vertex.point.position, vertex.normal},
+                     {ends_.light.position, ends_.light.normal},
+                     channel_of(vertex),
+                     tracer_.random_walk_.optical_path_to_light(vertex, ends_),
+                     value);
 }
 
 void PairWalk::deposit(const PathVertex& vertex, double value) {
-    histogram_.add(channel_of(vertex), tracer_.surface_walk_.extent_to_light(vertex, ends_), value);
+    histogram_.add(
+        channel_of(vertex), tracer_.random_walk_.optical_path_to_light(vertex, ends_), value);
 }
 
 int PairWalk::channel_of(const PathVertex& vertex) const {
@@ -158,7 +159,7 @@ void add_short_paths(const Scene& scene,
     if (ends.coincide) {
         if (settings.direct_return) {
             histogram.add(channel(1),
-                          {ends.device_legs_m, 0.0},
+                          {ends.device_segments_m, 0.0},
                           ends.light.strength / settings.laser_spot_m2);
         }
         return;
@@ -172,7 +173,7 @@ void add_short_paths(const Scene& scene,
     if (value > 0.0 &&
         !scene.rays().is_blocked(
             ends.sensor.position, ends.sensor.normal, ends.light.position, ends.light.normal)) {
-        histogram.add(channel(2), {distance + ends.device_legs_m, 0.0}, value);
+        histogram.add(channel(2), {distance + ends.device_segments_m, 0.0}, value);
     }
 }
 

@@ -6,9 +6,9 @@
 #include "renderer/path/first_vertex_batch.h"
 #include "renderer/path/light_subpaths.h"
 #include "renderer/path/path_vertex.h"
+#include "renderer/path/random_walk.h"
 #include "renderer/path/sensor_pairs.h"
-#include "renderer/path/surface_walk.h"
-#include "renderer/path/waiting_connections.h"
+#include "renderer/path/shadow_ray_queue.h"
 
 #include <memory>
 
@@ -64,7 +64,7 @@ class Tracer {
     const Scene* scene_;
     int max_order_;
     bool by_order_;
-    SurfaceWalk surface_walk_;
+    RandomWalk random_walk_;
     FacetTraits facet_traits_;
 };
 
@@ -83,8 +83,8 @@ class PairWalk {
                                      int count,
                                      const LightSubpaths* subpaths) = 0;
     /// Traces what waits; to be called after all samples.
-    void finish() { waiting_.finish(); }
-    std::uint64_t num_rays() const { return num_rays_ + waiting_.num_rays(); }
+    void finish() { shadow_rays_.finish(); }
+    std::uint64_t num_rays() const { return num_rays_ + shadow_rays_.num_rays(); }
 
  protected:
     /// Traces paths whose first vertices are drawn from the hidden area and by direction.
@@ -109,7 +109,7 @@ class PairWalk {
     core::Rng& rng_;
     PassHistogram& histogram_;
     FirstVertexBatch first_;
-    WaitingConnections waiting_;
+    ShadowRayQueue shadow_rays_;
     std::uint64_t num_rays_ = 0;
 
  private:

@@ -17,12 +17,12 @@ constexpr std::size_t kWalksPerBlock = 64;
 constexpr std::uint32_t kVerticesAtOnce = 64;
 
 // Bound of the rounding of lengths in single precision, relative to the size of the scene.
-constexpr float kRoundingShare = 16.0F * 0x1.0p-24F;
+constexpr float kRoundingFraction = 16.0F * 0x1.0p-24F;
 
 }  // namespace
 
 LightVertexCache::LightVertexCache(const Scene& scene,
-                                   const SurfaceWalk& walk,
+                                   const RandomWalk& walk,
                                    const SensorPairs& sensor_pairs)
     : scene_(&scene), walk_(&walk), by_area_(!sensor_pairs.is_image()) {
     light_ = sensor_pairs.ends(0).light;
@@ -129,11 +129,11 @@ void LightVertexCache::find(const PathDomain& domain,
     const Eigen::Vector3f light = (domain.ends.light.position - origin).cast<float>();
     const auto end_f = static_cast<float>(opl_m.high_m - domain.extra_opl_m());
     const auto begin_f = static_cast<float>(opl_m.low_m - domain.extra_opl_m());
-    const float margin = kRoundingShare * (std::abs(end_f) + std::abs(begin_f) + start.norm());
+    const float margin = kRoundingFraction * (std::abs(end_f) + std::abs(begin_f) + start.norm());
     const float low = begin_f - margin;
     const float high = end_f + margin;
     // Confocal, and every walk has a single vertex.
-    const bool same_legs =
+    const bool same_segments =
         by_area_ && domain.ends.coincide && points_.size() + 1 == walk_begin_.size();
     const std::uint32_t last = walk_begin_[static_cast<std::size_t>(walks.first + walks.count)];
     for (std::uint32_t v = walk_begin_[static_cast<std::size_t>(walks.first)]; v < last;) {
@@ -149,8 +149,8 @@ void LightVertexCache::find(const PathDomain& domain,
             const float dz = z[i] - start.z();
             length[i] = std::sqrt(dx * dx + dy * dy + dz * dz) + to_light_m[i];
         }
-        for (std::uint32_t i = 0; same_legs && i < count; ++i) length[i] *= 2.0F;
-        for (std::uint32_t i = 0; by_area_ && !same_legs && i < count; ++i) {
+        for (std::uint32_t i = 0; same_segments && i < count; ++i) length[i] *= 2.0F;
+        for (std::uint32_t i = 0; by_area_ && !same_segments && i < count; ++i) {
             const float lx = first_x[i] - light.x();
             const float ly = first_y[i] - light.y();
             const float lz = first_z[i] - light.z();

@@ -19,7 +19,7 @@ namespace renderer {
 class LightVertexCache {
  public:
     /// All must outlive this.
-    LightVertexCache(const Scene& scene, const SurfaceWalk& walk, const SensorPairs& sensor_pairs);
+    LightVertexCache(const Scene& scene, const RandomWalk& walk, const SensorPairs& sensor_pairs);
 
     /// Replaces all vertices by those of new walks; the same bits for any number of threads.
     ///
@@ -64,7 +64,7 @@ class LightVertexCache {
     void store(const std::vector<Walked>& walks);
 
     const Scene* scene_;
-    const SurfaceWalk* walk_;
+    const RandomWalk* walk_;
     PathEndpoint light_;  ///< of cameras; on scans the middle of the laser spots
     bool by_area_;        ///< how first vertices are drawn
 

@@ -44,29 +44,29 @@ class PathCandidates::Job {
     // point.
     struct Start {
         ConnectionEnds ends;
-        OplBand lengths;  ///< of the two legs to the light
+        OplBand lengths;  ///< of the two segments to the light
         std::optional<LobeOnFacet> lobe;
     };
     Start start_of_connection(const PathVertex* walked);
     void connect_by_ellipsoid(const PathVertex* walked, ReusablePath path);
     bool draw_first(PathVertex& vertex);
-    std::optional<SurfaceWalk::Step> first_step(const SurfacePoint& next) const;
+    std::optional<RandomWalk::Step> first_step(const SurfacePoint& next) const;
     std::optional<PathValue> value_within(const ReusablePath& path) const;
     double density(const ReusablePath& path);
     double density_of_walks(const ReusablePath& path);
-    bool is_blocked(const ReusablePath& path, int leg);
+    bool is_blocked(const ReusablePath& path, int segment);
     // Confocal, a single vertex is seen from the light if it is seen from the sensor.
     bool is_seen_back(const ReusablePath& path) const {
         return ends_.coincide && path.num_vertices == 1;
     }
     double opl_straight_to_light(const PathVertex& vertex) const {
-        return ends_.device_legs_m + vertex.extent.opl_m +
+        return ends_.device_segments_m + vertex.optical_path.opl_m +
                (ends_.light.position - vertex.point.position).norm();
     }
 
     const PathCandidates& candidates_;
     const Scene& scene_;
-    const SurfaceWalk& walk_;
+    const RandomWalk& walk_;
     int max_vertices_;
     const Request& request_;
     const PathDomain& domain_;
@@ -79,7 +79,7 @@ class PathCandidates::Job {
 PathCandidates::PathCandidates(const Scene& scene,
                                const core::Scan& scan,
                                const SensorPairs& sensor_pairs,
-                               const SurfaceWalk& walk,
+                               const RandomWalk& walk,
                                const core::TimeAxis& axis,
                                const RenderSettings& settings)
     : scene_(&scene),
@@ -115,12 +115,12 @@ std::uint64_t PathCandidates::generate(const Request& request,
     return job.num_rays();
 }
 
-std::optional<SurfaceWalk::Step> PathCandidates::Job::first_step(const SurfacePoint& next) const {
+std::optional<RandomWalk::Step> PathCandidates::Job::first_step(const SurfacePoint& next) const {
     if (domain_.seen) return walk_.step_to(*domain_.seen, next);
     const PathEndpoint& sensor = ends_.sensor;
     const Vec3 offset = next.position - sensor.position;
     const double distance2 = offset.squaredNorm();
-    SurfaceWalk::Step step;
+    RandomWalk::Step step;
     step.distance_m = std::sqrt(distance2);
     step.direction = offset / step.distance_m;
     const double per_area =
@@ -128,8 +128,9 @@ std::optional<SurfaceWalk::Step> PathCandidates::Job::first_step(const SurfacePo
     step.transport = sensor.factor(step.direction) * per_area;
     if (!(step.transport > 0.0)) return std::nullopt;
     const double area_pdf = scene_.is_hidden(next.facet) ? walk_.area_sampler().pdf_area() : 0.0;
-    step.pdf_area = kAreaShareFromWall * area_pdf +
-                    (1.0 - kAreaShareFromWall) * sensor.normal.dot(step.direction) / kPi * per_area;
+    step.pdf_area = kAreaFractionFromWall * area_pdf + (1.0 - kAreaFractionFromWall) *
+                                                           sensor.normal.dot(step.direction) / kPi *
+                                                           per_area;
     return step;
 }
 
@@ -141,7 +142,7 @@ bool PathCandidates::Job::draw_first(PathVertex& vertex) {
     }
     const PathEndpoint& sensor = ends_.sensor;
     SurfacePoint point;
-    const bool from_area = rng_.uniform() < kAreaShareFromWall;
+    const bool from_area = rng_.uniform() < kAreaFractionFromWall;
     const double u1 = rng_.uniform();
     const double u2 = rng_.uniform();
     if (from_area) {
@@ -161,7 +162,7 @@ bool PathCandidates::Job::draw_first(PathVertex& vertex) {
     if (!step) return false;
     // No path through this point is shorter than the one that continues straight to the light.
     const double shortest =
-        ends_.device_legs_m + step->distance_m + (ends_.light.position - point.position).norm();
+        ends_.device_segments_m + step->distance_m + (ends_.light.position - point.position).norm();
     if (shortest >= request_.opl_end_m) return false;
     if (max_vertices_ == 1 && shortest < request_.opl_begin_m) return false;
     PathVertex start;
@@ -172,9 +173,9 @@ bool PathCandidates::Job::draw_first(PathVertex& vertex) {
     return !scene_.rays().is_blocked(sensor.position, sensor.normal, point.position, vertex.normal);
 }
 
-bool PathCandidates::Job::is_blocked(const ReusablePath& path, int leg) {
+bool PathCandidates::Job::is_blocked(const ReusablePath& path, int segment) {
     ++num_rays_;
-    return candidates_.integrand_.is_blocked(domain_, path, leg);
+    return candidates_.integrand_.is_blocked(domain_, path, segment);
 }
 
 void PathCandidates::Job::walk_from_sensor() {
@@ -198,12 +199,12 @@ void PathCandidates::Job::walk_from_sensor() {
 PathCandidates::Job::Start PathCandidates::Job::start_of_connection(const PathVertex* walked) {
     const PathVertex* const vertex = walked == nullptr && domain_.seen ? &*domain_.seen : walked;
     if (vertex == nullptr) {
-        const double legs = ends_.device_legs_m;
+        const double segments = ends_.device_segments_m;
         return {connection_ends(ends_),
-                {request_.opl_begin_m - legs, request_.opl_end_m - legs},
+                {request_.opl_begin_m - segments, request_.opl_end_m - segments},
                 std::nullopt};  // walls are diffuse
     }
-    const double before = ends_.device_legs_m + vertex->extent.opl_m;
+    const double before = ends_.device_segments_m + vertex->optical_path.opl_m;
     return {connection_ends(*vertex, ends_.light),
             {request_.opl_begin_m - before, request_.opl_end_m - before},
             candidates_.connections_->lobe_of(*vertex, ends_.light.position, num_rays_)};
@@ -241,8 +242,8 @@ void PathCandidates::Job::try_shared() {
 
 std::optional<PathValue> PathCandidates::Job::value_within(const ReusablePath& path) const {
     const PathValue value = candidates_.integrand_.evaluate(domain_, path);
-    if (!(value.radiance > 0.0) || value.extent.opl_m < request_.opl_begin_m ||
-        value.extent.opl_m >= request_.opl_end_m) {
+    if (!(value.radiance > 0.0) || value.optical_path.opl_m < request_.opl_begin_m ||
+        value.optical_path.opl_m >= request_.opl_end_m) {
         return std::nullopt;
     }
     return value;

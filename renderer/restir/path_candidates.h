@@ -42,7 +42,7 @@ class PathCandidates {
     PathCandidates(const Scene& scene,
                    const core::Scan& scan,
                    const SensorPairs& sensor_pairs,
-                   const SurfaceWalk& walk,
+                   const RandomWalk& walk,
                    const core::TimeAxis& axis,
                    const RenderSettings& settings);
 
@@ -60,7 +60,7 @@ class PathCandidates {
     class Job;
 
     const Scene* scene_;
-    const SurfaceWalk* walk_;
+    const RandomWalk* walk_;
     ExcludedFacets excluded_;
     PathIntegrand integrand_;
     LightVertexCache light_vertices_;

@@ -124,7 +124,7 @@ Reservoir<Sample> resample_balance_heuristic(const Reservoir<Sample>& canonical,
 /// Merges a canonical reservoir with neighbours whose number was fixed before any sample was
 /// known, by defensive pairwise MIS (source [Bitterli2022], weights as in [Lin2022]).
 ///
-/// A neighbour without a sample, or whose sample cannot be shifted, still counts: its share goes to
+/// A neighbour without a sample, or whose sample cannot be shifted, still counts: its part goes to
 /// the canonical sample. Counting only successful shifts would be biased.
 template <class Sample>
 class PairwiseMisMerge {
@@ -134,7 +134,7 @@ class PairwiseMisMerge {
     PairwiseMisMerge(const Reservoir<Sample>& canonical, int num_neighbours)
         : canonical_(canonical),
           num_neighbours_(num_neighbours),
-          canonical_share_(num_neighbours > 0 ? canonical.confidence / num_neighbours : 0.0) {}
+          canonical_fraction_(num_neighbours > 0 ? canonical.confidence / num_neighbours : 0.0) {}
 
     /// here    image of the neighbour's sample in the canonical domain, nothing if it has none
     /// there   image of the canonical sample in the neighbour's domain, likewise
@@ -144,13 +144,13 @@ class PairwiseMisMerge {
                        const Carry& there,
                        double u) {
         if (!canonical_.empty()) {
-            const double own = canonical_share_ * canonical_.target_value;
+            const double own = canonical_fraction_ * canonical_.target_value;
             canonical_weight_ +=
                 there ? balance_weight(
                             own, neighbour.confidence * there->target_value, there->jacobian)
                       : 1.0;
         }
-        add_foreign(builder_, neighbour, here, canonical_share_, u);
+        add_foreign(builder_, neighbour, here, canonical_fraction_, u);
     }
 
     /// The result counts as many frames as the canonical reservoir: neighbours know no others.
@@ -167,7 +167,7 @@ class PairwiseMisMerge {
  private:
     const Reservoir<Sample>& canonical_;
     int num_neighbours_;
-    double canonical_share_;  ///< M_c / N
+    double canonical_fraction_;  ///< M_c / N
     double canonical_weight_ = 1.0;
     ReservoirBuilder<Sample> builder_;
 };

@@ -22,10 +22,10 @@ Vec3 motion(const RestirScene& from, const RestirScene& to, std::uint32_t facet)
     return to.scene->facet(facet).corner - from.scene->facet(facet).corner;
 }
 
-// The extent of a path without the two legs of its first vertex.
-PathExtent rest_of(const ReservoirDomain& side, const ReusablePath& path) {
+// The optical path without the two segments of its first vertex.
+OpticalPath rest_of(const ReservoirDomain& side, const ReusablePath& path) {
     const Scene& scene = *side.scene->scene;
-    PathExtent rest = side.domain->extra();
+    OpticalPath rest = side.domain->extra();
     if (path.num_vertices == 1) return rest;
     for (int i = 2; i < path.num_vertices; ++i) {
         rest.add_segment(path.at(i).position - path.at(i - 1).position,
@@ -39,14 +39,14 @@ PathExtent rest_of(const ReservoirDomain& side, const ReusablePath& path) {
     return rest;
 }
 
-// How the two legs of the first vertex must change for a path to fit its new domain. All velocity
-// bins have the same width.
+// How the two segments of the first vertex must change for a path to fit its new domain. All
+// velocity bins have the same width.
 ConstraintChange change_between(const ReservoirDomain& from,
                                 const ReusablePath& path_from,
                                 const ReservoirDomain& to,
                                 const ReusablePath& path_to) {
-    const PathExtent rest_from = rest_of(from, path_from);
-    const PathExtent rest_to = rest_of(to, path_to);
+    const OpticalPath rest_from = rest_of(from, path_from);
+    const OpticalPath rest_to = rest_of(to, path_to);
     ConstraintChange change;
     if (from.gate.velocity) {
         change.offset_m = to.gate.velocity->start_m_per_s() - rest_to.velocity_m_per_s -
@@ -81,7 +81,7 @@ bool is_same(const ShiftEnd& a, const ShiftEnd& b) {
     return a.a == b.a && a.y == b.y && a.velocity_a == b.velocity_a && a.velocity_y == b.velocity_y;
 }
 
-// Whether the path velocity of the two legs is 0 wherever the vertex lies on its surface.
+// Whether the path velocity of the two segments is 0 wherever the vertex lies on its surface.
 bool is_at_rest(const ShiftEnd& end, const Vec3& surface_velocity) {
     return end.velocity_a == surface_velocity && end.velocity_y == surface_velocity;
 }
@@ -132,19 +132,19 @@ bool is_unoccluded(const ReservoirDomain& from,
     const bool there_and_back = to.domain->ends.coincide && path.num_vertices == 1;
     const bool light_moved =
         path.num_vertices > 1 && from.domain->ends.light.position != to.domain->ends.light.position;
-    for (const int leg : {0, 1, path.num_vertices}) {
-        if (leg == 1 && there_and_back) break;
-        if (leg > 1 && !light_moved) break;
+    for (const int segment : {0, 1, path.num_vertices}) {
+        if (segment == 1 && there_and_back) break;
+        if (segment > 1 && !light_moved) break;
         ++num_rays;
-        if (integrand.is_blocked(*to.domain, path, leg)) return false;
-        if (leg == 1 && path.num_vertices == 1) break;
+        if (integrand.is_blocked(*to.domain, path, segment)) return false;
+        if (segment == 1 && path.num_vertices == 1) break;
     }
     return true;
 }
 
 }  // namespace
 
-std::optional<std::size_t> ReservoirBins::bin_of(const PathExtent& path) const {
+std::optional<std::size_t> ReservoirBins::bin_of(const OpticalPath& path) const {
     // A shaped gate reaches beyond its bin.
     const auto time = axes_.time.num_bins == 1 ? 0 : axes_.time.bin_of(path.opl_m);
     if (!time) return std::nullopt;
@@ -191,7 +191,7 @@ RestirScene::RestirScene(std::shared_ptr<const Scene> scene_of_frames,
       walk(*scene, settings.laser_spot_m2),
       candidates(*scene, scan, sensor_pairs, walk, axes.time, settings),
       shift(make_shift(*scene, settings.restir, axes)) {
-    if (sensor_pairs.is_image()) pixel_places.emplace(sensor_pairs, sensor_pairs.camera());
+    if (sensor_pairs.is_image()) pixel_positions.emplace(sensor_pairs, sensor_pairs.camera());
 }
 
 PathDomain pixel_domain(const SensorPairs& sensor_pairs,
@@ -240,7 +240,7 @@ ShiftedSample shift_sample(const PathReservoir& reservoir,
         carried.jacobian = *jacobian;
     }
     const PathValue value = to.scene->candidates.integrand().evaluate(*to.domain, carried.sample);
-    carried.target_value = value.radiance * to.gate.weight(value.extent);
+    carried.target_value = value.radiance * to.gate.weight(value.optical_path);
     if (!(carried.target_value > 0.0) ||
         !is_unoccluded(from, to, carried.sample, counts.num_rays)) {
         carried.target_value = 0.0;

@@ -27,10 +27,10 @@ struct RestirScene {
 
     std::shared_ptr<const Scene> scene;
     SensorPairs sensor_pairs;
-    SurfaceWalk walk;
+    RandomWalk walk;
     PathCandidates candidates;
-    std::optional<ShiftMapping> shift;                 ///< nothing: paths are reused as they are
-    std::optional<PixelPositionSampler> pixel_places;  ///< of an image
+    std::optional<ShiftMapping> shift;                    ///< nothing: paths are reused as they are
+    std::optional<PixelPositionSampler> pixel_positions;  ///< of an image
 };
 
 /// Many finished reservoirs of paths, stored compactly for paths of limited length.
@@ -110,7 +110,7 @@ class ReservoirBins {
     /// The gate of all reservoirs together.
     TimeGate lengths() const { return TimeGate::of_axis(axes_.time, shape_); }
     /// The bin of a path; nothing when its length lies outside.
-    std::optional<std::size_t> bin_of(const PathExtent& path) const;
+    std::optional<std::size_t> bin_of(const OpticalPath& path) const;
     /// The gate of a bin; not for the one outside the velocity axis.
     PathGate gate(std::size_t bin) const;
 

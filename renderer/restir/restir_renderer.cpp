@@ -35,11 +35,11 @@ constexpr double kMinNormalCosine = 0.5;
 // Confidence counts frames, whatever their number of candidates.
 constexpr double kConfidenceOfFrame = 1.0;
 
-PathCandidates::Effort effort_of(const RestirSettings& settings, double share) {
+PathCandidates::Effort effort_of(const RestirSettings& settings, double fraction) {
     PathCandidates::Effort effort;
-    effort.walks = std::max(1, static_cast<int>(std::lround(share * settings.walks)));
+    effort.walks = std::max(1, static_cast<int>(std::lround(fraction * settings.walks)));
     if (has_shared_walks(settings.candidates)) {
-        effort.shared_walks = static_cast<int>(std::lround(share * settings.shared_walks));
+        effort.shared_walks = static_cast<int>(std::lround(fraction * settings.shared_walks));
     }
     return effort;
 }
@@ -60,15 +60,15 @@ struct RestirRenderer::Worker {
 
     // Draws paths of the pair within a gate and offers them to the builder of their bin.
     template <class BuilderOf>
-    void draw(const TimeGate& gate, double share, const BuilderOf& builder_of) {
+    void draw(const TimeGate& gate, double fraction, const BuilderOf& builder_of) {
         const PathDomain& domain = frame.domains[pair];
         const PathCandidates::Request request{
-            domain, gate.begin_m(), gate.end_m(), effort_of(settings, share)};
+            domain, gate.begin_m(), gate.end_m(), effort_of(settings, fraction)};
         counts.num_rays += frame.scene->candidates.generate(
             request, rng, [&](const ReusablePath& path, const PathValue& value, double density) {
-                ReservoirBuilder<ReusablePath>* const builder = builder_of(value.extent);
+                ReservoirBuilder<ReusablePath>* const builder = builder_of(value.optical_path);
                 if (builder == nullptr) return;
-                const double target = value.radiance * gate.weight(value.extent.opl_m);
+                const double target = value.radiance * gate.weight(value.optical_path.opl_m);
                 ReusablePath placed = path;
                 placed.pixel_u = domain.pixel_u;
                 const double weight = target / density;
@@ -90,15 +90,15 @@ struct RestirRenderer::Worker {
 
     // Candidates against a wider gate, shifted into the narrow one (source [Kim2026]).
     PathReservoir sample_wide_gate(const PathReservoir& narrow) {
-        const double share = settings.shrink_fraction;
+        const double fraction = settings.shrink_fraction;
         const ReservoirDomain here(frame, pair, 0);
         ReservoirDomain wide = here;
         TimeGate& gate = wide.gate.time;
         gate.width_m /= kShrink;
         gate.start_m -= 0.5 * (gate.width_m - here.gate.time.width_m);
         ReservoirBuilder<ReusablePath> builder;
-        draw(gate, share, [&](const PathExtent&) { return &builder; });
-        return merge(narrow, here, builder.finish(share * kConfidenceOfFrame), wide);
+        draw(gate, fraction, [&](const OpticalPath&) { return &builder; });
+        return merge(narrow, here, builder.finish(fraction * kConfidenceOfFrame), wide);
     }
 
     PathReservoir with_past(const RestirFrame& previous,
@@ -251,14 +251,14 @@ void RestirRenderer::generate_candidates(const FrameInput& input, RestirFrame& f
     for_each_pair(input, frame, kCandidateStage, [&](Worker& worker) {
         auto& builders = worker.builders;
         std::fill(builders.begin(), builders.end(), ReservoirBuilder<ReusablePath>());
-        const double share = 1.0 - settings_.restir.shrink_fraction;
-        worker.draw(frame.bins.lengths(), share, [&](const PathExtent& extent) {
-            const auto bin = frame.bins.bin_of(extent);
+        const double fraction = 1.0 - settings_.restir.shrink_fraction;
+        worker.draw(frame.bins.lengths(), fraction, [&](const OpticalPath& optical_path) {
+            const auto bin = frame.bins.bin_of(optical_path);
             return bin ? &builders[*bin] : nullptr;
         });
         for (std::size_t bin = 0; bin < num_bins; ++bin) {
-            PathReservoir fresh = builders[bin].finish(share * kConfidenceOfFrame);
-            if (share < 1.0) fresh = worker.sample_wide_gate(fresh);
+            PathReservoir fresh = builders[bin].finish(fraction * kConfidenceOfFrame);
+            if (fraction < 1.0) fresh = worker.sample_wide_gate(fresh);
             const double estimate = fresh.estimate();
             worker.statistics[worker.pair % 2].candidates += estimate * estimate;
             frame.reservoirs.store(worker.pair * num_bins + bin, fresh);
@@ -274,8 +274,8 @@ void RestirRenderer::reuse_spatially(const FrameInput& input, int round, RestirF
         neighbours_.pick(pair, settings_.restir.neighbours, worker.rng, worker.neighbours);
         // Neighbours must be chosen without regard to anything random in their reservoirs, such as
         // where in the pixels their paths start.
-        if (frame.scene->pixel_places) {
-            const std::vector<core::Vec3>& normals = frame.scene->pixel_places->normals();
+        if (frame.scene->pixel_positions) {
+            const std::vector<core::Vec3>& normals = frame.scene->pixel_positions->normals();
             std::erase_if(worker.neighbours, [&](std::size_t other) {
                 return std::abs(normals[other].dot(normals[pair])) < kMinNormalCosine;
             });

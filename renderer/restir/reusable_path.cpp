@@ -9,7 +9,7 @@ using core::Vec3;
 
 PathValue PathIntegrand::evaluate(const PathDomain& domain, const ReusablePath& path) const {
     PathValue value;
-    value.extent = domain.extra();
+    value.optical_path = domain.extra();
     if (!dropped_.empty() && dropped_[path.last().facet]) return value;
     // The relay wall has no third bounce.
     if (!domain.seen && path.num_vertices == 1 && !scene_->is_hidden(path.first().facet)) {
@@ -29,8 +29,8 @@ PathValue PathIntegrand::evaluate(const PathDomain& domain, const ReusablePath& 
         const Vec3 direction = offset / distance;
         const Vec3& next_velocity =
             to_light ? light.velocity_m_per_s : scene_->velocity_m_per_s(path.at(i).facet);
-        value.extent.opl_m += distance;
-        value.extent.velocity_m_per_s += direction.dot(next_velocity - velocity);
+        value.optical_path.opl_m += distance;
+        value.optical_path.velocity_m_per_s += direction.dot(next_velocity - velocity);
         velocity = next_velocity;
         if (i > 0) {
             if (const auto returned = returned_to_source(before.bsdf)) {
@@ -58,15 +58,18 @@ PathValue PathIntegrand::evaluate(const PathDomain& domain, const ReusablePath& 
     return value;
 }
 
-bool PathIntegrand::is_blocked(const PathDomain& domain, const ReusablePath& path, int leg) const {
+bool PathIntegrand::is_blocked(const PathDomain& domain,
+                               const ReusablePath& path,
+                               int segment) const {
     const auto normal_at = [&](int i) -> const Vec3& {
         return scene_->facet(path.at(i).facet).normal;
     };
-    const bool to_light = leg == path.num_vertices;
-    return scene_->rays().is_blocked(leg == 0 ? domain.start() : path.at(leg - 1).position,
-                                     leg == 0 ? domain.start_normal() : normal_at(leg - 1),
-                                     to_light ? domain.ends.light.position : path.at(leg).position,
-                                     to_light ? domain.ends.light.normal : normal_at(leg));
+    const bool to_light = segment == path.num_vertices;
+    return scene_->rays().is_blocked(
+        segment == 0 ? domain.start() : path.at(segment - 1).position,
+        segment == 0 ? domain.start_normal() : normal_at(segment - 1),
+        to_light ? domain.ends.light.position : path.at(segment).position,
+        to_light ? domain.ends.light.normal : normal_at(segment));
 }
 
 bool PathIntegrand::is_any_blocked(const PathDomain& domain,
@@ -74,10 +77,10 @@ bool PathIntegrand::is_any_blocked(const PathDomain& domain,
                                    std::uint64_t& num_rays) const {
     // Confocal, a single vertex is seen from the light if it is seen from the sensor.
     const bool there_and_back = domain.ends.coincide && path.num_vertices == 1;
-    const int num_legs = there_and_back ? 1 : path.num_vertices + 1;
-    for (int leg = 0; leg < num_legs; ++leg) {
+    const int num_segments = there_and_back ? 1 : path.num_vertices + 1;
+    for (int segment = 0; segment < num_segments; ++segment) {
         ++num_rays;
-        if (is_blocked(domain, path, leg)) return true;
+        if (is_blocked(domain, path, segment)) return true;
     }
     return false;
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "renderer/path/path_vertex.h"
-#include "renderer/path/surface_walk.h"
+#include "renderer/path/random_walk.h"
 #include "renderer/settings/estimators.h"
 
 #include <array>
@@ -43,10 +43,10 @@ struct PathDomain {
     /// Length that counts in addition to that of the path itself [m].
     double extra_opl_m() const { return extra().opl_m; }
     /// That length and its rate of change.
-    PathExtent extra() const {
-        PathExtent extent = seen ? seen->extent : PathExtent{};
-        extent.opl_m += ends.device_legs_m;
-        return extent;
+    OpticalPath extra() const {
+        OpticalPath optical_path = seen ? seen->optical_path : OpticalPath{};
+        optical_path.opl_m += ends.device_segments_m;
+        return optical_path;
     }
     /// Velocity of the surface where paths start; wall points are at rest.
     core::Vec3 start_velocity(const Scene& scene) const {
@@ -56,8 +56,8 @@ struct PathDomain {
 
 /// The contribution of a path, as a density over the areas at all its vertices.
 struct PathValue {
-    double radiance = 0.0;  ///< unoccluded [W / (m^2 sr)] per product of areas
-    PathExtent extent;      ///< the whole length on the axis, and its rate of change
+    double radiance = 0.0;     ///< unoccluded [W / (m^2 sr)] per product of areas
+    OpticalPath optical_path;  ///< the whole length on the axis, and its rate of change
 };
 
 /// Evaluates reusable paths.
@@ -67,7 +67,7 @@ class PathIntegrand {
     /// dropped       per facet, whether paths whose last vertex lies on it are left out; may be
     ///               empty
     PathIntegrand(const Scene& scene,
-                  const SurfaceWalk& walk,
+                  const RandomWalk& walk,
                   double laser_spot_m2,
                   std::vector<bool> dropped)
         : scene_(&scene),
@@ -78,8 +78,8 @@ class PathIntegrand {
     /// A path of at least one vertex; radiance 0 when it has no contribution.
     PathValue evaluate(const PathDomain& domain, const ReusablePath& path) const;
 
-    /// Segment `leg` goes to vertex `leg`, the last one to the light.
-    bool is_blocked(const PathDomain& domain, const ReusablePath& path, int leg) const;
+    /// Segment `segment` goes to vertex `segment`, the last one to the light.
+    bool is_blocked(const PathDomain& domain, const ReusablePath& path, int segment) const;
     /// Whether any segment is blocked; each counts as a ray.
     bool is_any_blocked(const PathDomain& domain,
                         const ReusablePath& path,
@@ -87,7 +87,7 @@ class PathIntegrand {
 
  private:
     const Scene* scene_;
-    const SurfaceWalk* walk_;
+    const RandomWalk* walk_;
     double laser_spot_m2_;
     std::vector<bool> dropped_;
 };

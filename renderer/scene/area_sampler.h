@@ -32,16 +32,16 @@ class AreaSampler {
         return {scene_->facet(facet).point(b.x(), b.y()), facet};
     }
 
-    /// For rising numbers: the share of u1 that holds the next one; see facet_of().
+    /// For rising numbers: the interval of u1 that holds the next one; see facet_of().
     ///
-    /// hint   index of the share before, at first 0
-    core::DiscreteDistribution::Share share_from(std::size_t hint, double u1) const {
-        return by_area_.share_from(hint, u1);
+    /// hint   index of the interval before, at first 0
+    core::DiscreteDistribution::Interval interval_from(std::size_t hint, double u1) const {
+        return by_area_.interval_from(hint, u1);
     }
-    /// Where sample() finds the u1 of a share; its points there are those of
-    /// sample_triangle({share.remap(u1), u2}).
-    std::uint32_t facet_of(const core::DiscreteDistribution::Share& share) const {
-        return facets_[share.index];
+    /// Where sample() finds the u1 of a interval; its points there are those of
+    /// sample_triangle({interval.remap(u1), u2}).
+    std::uint32_t facet_of(const core::DiscreteDistribution::Interval& interval) const {
+        return facets_[interval.index];
     }
 
     /// Density of sample() on hidden facets, pdf_area [1/m^2].

@@ -195,8 +195,8 @@ class CoverFinder {
 
     // Within a face's plane, so that narrow faces are no exception.
     double slack_m(const FacePlane& plane) const {
-        constexpr double kShareOfWidth = 0.01;
-        return std::min(tolerance_m_, kShareOfWidth * plane.width_m());
+        constexpr double kFractionOfWidth = 0.01;
+        return std::min(tolerance_m_, kFractionOfWidth * plane.width_m());
     }
 
     static constexpr double kWhole = 1.0 - 1e-9;  ///< of a face of which nothing is covered

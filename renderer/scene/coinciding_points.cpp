@@ -7,20 +7,20 @@
 namespace renderer {
 namespace {
 
-using Place = std::array<double, 6>;  // position and normal
+using PointKey = std::array<double, 6>;  // position and normal
 
-Place place(const core::WallPoints& points, std::size_t i) {
+PointKey point_key(const core::WallPoints& points, std::size_t i) {
     const core::Vec3& p = points.positions[i];
     const core::Vec3& n = points.normals[i];
     return {p.x(), p.y(), p.z(), n.x(), n.y(), n.z()};
 }
 
 std::vector<bool> found_in(const core::WallPoints& points, const core::WallPoints& others) {
-    std::set<Place> places;
-    for (std::size_t i = 0; i < others.size(); ++i) places.insert(place(others, i));
+    std::set<PointKey> keys;
+    for (std::size_t i = 0; i < others.size(); ++i) keys.insert(point_key(others, i));
     std::vector<bool> found;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        found.push_back(places.contains(place(points, i)));
+        found.push_back(keys.contains(point_key(points, i)));
     }
     return found;
 }

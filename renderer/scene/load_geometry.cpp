@@ -52,7 +52,7 @@ void warn_of_size(const SceneDescription& description,
                            : std::hypot(width, height);
     if (size_m < kLargestRatio * wall_m && size_m > kSmallestRatio * wall_m) return;
     geometry.warnings.push_back(
-        fmt::format("{} is {:.3g} m across{} {:.3g} m, if its unit is the metre; {} states another "
+        fmt::format("{} is {:.3g} m across{} {:.3g} m, if its unit is the metre; {} gives another "
                     "(0.001: millimetres, 0.01: centimetres, 0.0254: inches)",
                     path,
                     size_m,
@@ -179,8 +179,8 @@ std::string geometry_format(const std::string& path) {
 
 std::vector<std::string> describe_frame(const SceneDescription& description) {
     if (!is_mesh_file(description.geometry)) return {};
-    const auto line = [](const std::string& what, bool is_stated, const char* key) {
-        return is_stated ? what : what + " (assumed, the file states none: " + key + ")";
+    const auto line = [](const std::string& what, bool is_given, const char* key) {
+        return is_given ? what : what + " (assumed, the file gives none: " + key + ")";
     };
     const MeshFrame usual;
     return {line(fmt::format("unit: {:g} m", description.geometry_unit_m.value_or(usual.unit_m)),

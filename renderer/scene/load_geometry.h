@@ -33,7 +33,7 @@ SceneGeometry load_geometry(const std::string& path);
 std::string geometry_format(const std::string& path);
 
 /// Says how the coordinates of the description's mesh file are taken, and what of it is assumed;
-/// nothing for glTF, which states both.
+/// nothing for glTF, which gives both.
 std::vector<std::string> describe_frame(const SceneDescription& description);
 
 }  // namespace renderer

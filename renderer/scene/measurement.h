@@ -7,7 +7,7 @@
 
 namespace renderer {
 
-/// A kind of core::Scan as scene.json states it: a row of facts and functions, which each take a
+/// A kind of core::Scan as scene.json gives it: a row of facts and functions, which each take a
 /// description that asks for this kind.
 struct Measurement {
     const char* size_key;  ///< the setting by which its pairs multiply

@@ -36,12 +36,12 @@ void read_value(const core::Json& json, const std::string& where, ObjectTable& o
     if (json.is_array()) {
         objects.clear();
         for (std::size_t i = 0; i < json.size(); ++i) {
-            const std::string place = fmt::format("{}[{}]", where, i);
-            if (!json[i].is_object()) core::throw_wrong_type(place, json[i], "an object");
+            const std::string key_path = fmt::format("{}[{}]", where, i);
+            if (!json[i].is_object()) core::throw_wrong_type(key_path, json[i], "an object");
             core::Json entry = json[i];
-            const std::string name = name_of(entry, place, objects);
+            const std::string name = name_of(entry, key_path, objects);
             entry.erase("name");
-            core::read_value(entry, place, objects[name]);
+            core::read_value(entry, key_path, objects[name]);
         }
         return;
     }
@@ -55,11 +55,11 @@ void read_value(const core::Json& json, const std::string& where, ObjectTable& o
 
 void validate(const ObjectTable& objects, const std::string& where) {
     for (const auto& [name, object] : objects) {
-        const std::string place = core::join_key(where, name);
-        core::check_ranges(object, place);
-        if (object.material) core::check_ranges(*object.material, place + ".material");
+        const std::string key_path = core::join_key(where, name);
+        core::check_ranges(object, key_path);
+        if (object.material) core::check_ranges(*object.material, key_path + ".material");
         const auto refuse = [&](const char* key, const char* found, const char* allowed) {
-            throw core::Error(place + "." + key, found, allowed);
+            throw core::Error(key_path + "." + key, found, allowed);
         };
         if (object.up && object.mesh && !is_mesh_file(*object.mesh)) {
             refuse("up", "found with a glTF file", "must be left out: glTF has y up");

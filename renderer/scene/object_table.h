@@ -41,7 +41,7 @@ using ObjectTable = std::map<std::string, ObjectSettings>;
 template <class Visitor>
 void for_each_field(MaterialSettings& material, Visitor&& visit) {
     visit("surface", material.surface, "how it reflects");
-    visit("albedo", material.albedo, core::between(0, 1, "share of light that is reflected"));
+    visit("albedo", material.albedo, core::between(0, 1, "fraction of light that is reflected"));
     visit("roughness", material.roughness, core::between(0, 1, "of models with a lobe"));
 }
 

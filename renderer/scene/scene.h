@@ -74,7 +74,7 @@ class Scene {
 
     const RayCaster& rays() const { return rays_; }
 
-    /// Rounding of the coordinates in which the scene has been stated, wherever it stands now [m].
+    /// Rounding of the coordinates in which the scene has been given, wherever it stands now [m].
     double stated_rounding_m() const { return stated_rounding_m_; }
 
     /// The surface model at a point, textures applied.

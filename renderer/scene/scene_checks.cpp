@@ -16,8 +16,8 @@ namespace {
 
 using core::Vec3;
 
-// Nearer surfaces than this share of the scene's size would need finer elements than the integrator
-// cuts, and soon finer numbers than rays have.
+// Nearer surfaces than this fraction of the scene's size would need finer elements than the
+// integrator cuts, and soon finer numbers than rays have.
 constexpr double kNearest = 1e-4;
 
 bool is_in_front(const Object& object, const core::WallPoints& points) {
@@ -36,8 +36,8 @@ Vec3 nearest_point(const Facet& facet, const Vec3& to) {
     const Vec3& ab = facet.edge1;
     const Vec3& ac = facet.edge2;
     const auto along = [&](const Vec3& from, const Vec3& edge) {
-        const double share = edge.dot(to - from) / edge.squaredNorm();
-        return Vec3(from + std::clamp(share, 0.0, 1.0) * edge);
+        const double fraction = edge.dot(to - from) / edge.squaredNorm();
+        return Vec3(from + std::clamp(fraction, 0.0, 1.0) * edge);
     };
     const Vec3 foot = to - facet.normal.dot(to - a) * facet.normal;
     const double b1 = facet.normal.dot((foot - a).cross(ac)) / (2.0 * facet.area_m2);

@@ -89,7 +89,7 @@ void refuse_two_setups(const core::Json& keys, const std::string& where) {
     }
 }
 
-// Puts a length that is stated in picoseconds in place of the one in metres; `key` is without unit.
+// Puts a length that is given in picoseconds in place of the one in metres; `key` is without unit.
 void take_picoseconds(const core::Json& json,
                       const std::string& key,
                       std::optional<double>& picoseconds,

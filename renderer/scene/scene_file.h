@@ -66,9 +66,9 @@ struct FrameSettings {
 
 /// The bins of path length: an object, or the text `auto`, which leaves the choice to geometry and
 /// scan. A bin width in picoseconds, or one in metres of what was `auto`, leaves the choice of what
-/// is not stated beside it.
+/// is not reported beside it.
 struct SceneTimeAxis : core::TimeAxis {
-    bool automatic = false;  ///< what is not stated is still to be chosen; see choose_time_axis()
+    bool automatic = false;  ///< what is not reported is still to be chosen; see choose_time_axis()
     struct Stated {
         bool bin_width = false;
         bool opl_start = false;
@@ -166,7 +166,7 @@ void for_each_field(SceneTimeAxis& axis, Visitor&& visit) {
           axis.bin_width_ps,
           core::above(0,
                       "instead of bin_width_m: width of a bin in time [ps]; start and number of "
-                      "bins are automatic where they are not stated beside it"));
+                      "bins are automatic where they are not given beside it"));
     visit("opl_start_ps",
           axis.opl_start_ps,
           core::Ranged{"instead of opl_start_m: time at the start of bin 0 [ps]", {}});
@@ -247,7 +247,7 @@ void validate(const SceneDescription& scene, const std::string& where);
 /// scene   a validated description
 core::Scan make_scan(const SceneDescription& scene);
 
-/// The inverse for a scan of wall points, which are stated one by one.
+/// The inverse for a scan of wall points, which are given one by one.
 void describe_scan(const core::WallScan& scan, ScanSettings& settings);
 
 /// Makes a description refer to a glTF file that holds its objects as they are.

@@ -77,12 +77,12 @@ TriangleMesh subdivided(const TriangleMesh& coarse) {
     fine.vertices = coarse.vertices;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-        const auto [place, is_new] = middles.try_emplace(
+        const auto [entry, is_new] = middles.try_emplace(
             std::minmax(a, b), static_cast<std::uint32_t>(fine.vertices.size()));
         if (is_new) {
             fine.vertices.push_back((coarse.vertices[a] + coarse.vertices[b]).normalized());
         }
-        return place->second;
+        return entry->second;
     };
     for (const auto& [a, b, c] : coarse.triangles) {
         const std::uint32_t ab = middle(a, b);

@@ -166,9 +166,9 @@ class MitsubaImport {
         KeyReader keys(value, where(key));
         ScanSettings& scan = scene_.description.scan;
         scan.detector_m = keys.get("sensor_origin", Vec3(Vec3::Zero()));
-        if (const Json* legs = keys.find("account_first_and_last_bounces")) {
+        if (const Json* segments = keys.find("account_first_and_last_bounces")) {
             bool is_counted = false;
-            core::read_value(*legs, keys.where("account_first_and_last_bounces"), is_counted);
+            core::read_value(*segments, keys.where("account_first_and_last_bounces"), is_counted);
             if (is_counted) scan.opl_origin = core::OplOrigin::Device;
             note(key,
                  "account_first_and_last_bounces is obeyed; newer versions of mitransient obey "

@@ -53,7 +53,7 @@ class XmlReader {
             const auto found = defaults_.find(text.substr(at + 1, end - at - 1));
             if (found == defaults_.end()) {
                 fail("uses " + text.substr(at, end - at) + " without a <default>",
-                     "must state its value");
+                     "must give its value");
             }
             text.replace(at, end - at, found->second);
             at += found->second.size();

@@ -52,7 +52,7 @@ ImportedScene import_by_kind(const std::string& path) {
 }
 
 /// Without what is null or an empty list.
-core::Json stated(const core::Json& json) {
+core::Json non_default(const core::Json& json) {
     core::Json result = core::Json::object();
     for (const auto& [key, value] : json.items()) {
         if (!value.is_null() && !(value.is_array() && value.empty())) result[key] = value;
@@ -82,7 +82,7 @@ ImportedScene import_scene(const std::string& path) {
 
 core::Json imported_scene_json(const ImportedScene& scene, const std::string& geometry) {
     const SceneDescription& description = scene.description;
-    core::Json scan = stated(core::write_value(description.scan));
+    core::Json scan = non_default(core::write_value(description.scan));
     if (description.scan.pattern != core::ScanPattern::Exhaustive)
         scan.erase("illumination_points");
     return {{"geometry", geometry},

@@ -131,12 +131,12 @@ class YtalImport {
     }
 
     void aim_laser(ScanSettings& scan) {
-        const auto share = [&](const char* key, int count) {
+        const auto fraction = [&](const char* key, int count) {
             const double pixel = keys_.get(key, 0.0);  // y-tal takes 0 for not given
             return pixel == 0.0 ? 0.5 : pixel / count;
         };
-        scan.illumination_m = on_wall(share("laser_lookat_x", scan.sensing_points[0]),
-                                      share("laser_lookat_y", scan.sensing_points[1]));
+        scan.illumination_m = on_wall(fraction("laser_lookat_x", scan.sensing_points[0]),
+                                      fraction("laser_lookat_y", scan.sensing_points[1]));
     }
 
     /// The grid of a confocal scan covers the wall, which is therefore cut to the scanned part.
@@ -195,7 +195,7 @@ class YtalImport {
         ForeignShape shape;
         shape.name = keys.get<std::string>("name", "");
         read_mesh(keys, shape);
-        shape.to_world = read_place(keys);
+        shape.to_world = read_transform(keys);
         shape.material = read_material(keys);
         keys.ignore({"description"});
         const bool is_wall = shape.name == wall_name;
@@ -218,7 +218,7 @@ class YtalImport {
         shape.filename = parts.get<std::string>("filename", "");
     }
 
-    static core::Transform read_place(KeyReader& keys) {
+    static core::Transform read_transform(KeyReader& keys) {
         const auto three = [&](const std::string& name, double otherwise) {
             std::array<double, 3> values{};
             constexpr std::array<const char*, 3> kAxes{"_x", "_y", "_z"};

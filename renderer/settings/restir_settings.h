@@ -64,7 +64,7 @@ void for_each_field(RestirSettings& s, Visitor&& visit) {
     // Shifted walks do not reach all paths of the gate: some must be drawn in it.
     visit("shrink_fraction",
           s.shrink_fraction,
-          core::Ranged{"share of walks traced against a wider gate", {0, true, 1, false}});
+          core::Ranged{"fraction of walks traced against a wider gate", {0, true, 1, false}});
     visit("reuse_bins", s.reuse_bins, "histograms: also reuse the two neighbouring bins");
     visit("reverse_check", s.reverse_check, "solve every shift backwards too");
 }

@@ -16,8 +16,8 @@ namespace renderer {
 /// To add one: a struct with `expand`; instantiate the routes of shift_mapping.cpp with it.
 /// With r = focus - p, d = |r|, u = r/d:  du/dp = -(I - u u^T)/d, and everything below follows.
 
-/// The two legs from p to the foci.
-struct FocusLegs {
+/// The two segments from p to the foci.
+struct FocusSegments {
     double length_a;
     double length_y;
     double inverse_a;  ///< 1/d_a
@@ -25,7 +25,7 @@ struct FocusLegs {
     core::Vec3 to_a;  ///< u_a, unit
     core::Vec3 to_y;
 
-    FocusLegs(const core::Vec3& r_a, const core::Vec3& r_y)
+    FocusSegments(const core::Vec3& r_a, const core::Vec3& r_y)
         : length_a(r_a.norm()),
           length_y(r_y.norm()),
           inverse_a(1.0 / length_a),
@@ -39,8 +39,8 @@ struct OpticalLength {
     core::Vec3 focus_a;
     core::Vec3 focus_y;
 
-    struct Expansion : FocusLegs {
-        using FocusLegs::FocusLegs;
+    struct Expansion : FocusSegments {
+        using FocusSegments::FocusSegments;
         double value = length_a + length_y;
         core::Vec3 gradient = -(to_a + to_y);
         double gradient_size = 1.0;
@@ -72,8 +72,8 @@ struct PathVelocity {
     core::Vec3 velocity_a;
     core::Vec3 velocity_y;
 
-    struct Expansion : FocusLegs {
-        using FocusLegs::FocusLegs;
+    struct Expansion : FocusSegments {
+        using FocusSegments::FocusSegments;
         double value = 0.0;
         core::Vec3 gradient;
         core::Vec3 relative_a;  ///< w_a
@@ -81,14 +81,15 @@ struct PathVelocity {
         double gradient_size = 0.0;
 
         core::Vec3 hessian_times(const core::Vec3& t) const {
-            return leg(to_a, relative_a, inverse_a, t) + leg(to_y, relative_y, inverse_y, t);
+            return segment(to_a, relative_a, inverse_a, t) +
+                   segment(to_y, relative_y, inverse_y, t);
         }
 
      private:
-        static core::Vec3 leg(const core::Vec3& u,
-                              const core::Vec3& w,
-                              double inverse,
-                              const core::Vec3& t) {
+        static core::Vec3 segment(const core::Vec3& u,
+                                  const core::Vec3& w,
+                                  double inverse,
+                                  const core::Vec3& t) {
             const double c = u.dot(w);
             const double u_t = u.dot(t);
             return (-inverse * inverse) * ((w.dot(t) - 3.0 * c * u_t) * u + u_t * w + c * t);

@@ -25,11 +25,11 @@ struct PlaneEnd {
     // ellipse the angle depends on the shorter axis, and the Jacobian varies over angles of the
     // ratio of the axes. Such ends are rejected on both sides of a shift, like those that the
     // solver cannot resolve.
-    bool is_resolved(double leg_a, double leg_b, double rounding_m) const {
+    bool is_resolved(double segment_a, double segment_b, double rounding_m) const {
         const double radius = section->circle_radius();
-        const double shorter = std::min(leg_a, leg_b);
+        const double shorter = std::min(segment_a, segment_b);
         return radius * radius * std::sqrt(flatness) > kTinyDeterminant &&
-               flatness > kTinyDeterminant && shorter > kShortestLeg * length &&
+               flatness > kTinyDeterminant && shorter > kShortestSegment * length &&
                shorter * radius * radius * flatness > kFeltRoundings * rounding_m;
     }
 };
@@ -44,10 +44,10 @@ std::optional<PlaneShift> shift_on_plane(const Facet& plane,
                                          ShiftTrace& trace) {
     Facet local = plane;
     local.corner.setZero();
-    const double leg_a = source.a.norm();
-    const double leg_b = source.b.norm();
-    const PlaneEnd from(source, leg_a + leg_b, local);
-    if (!from.section || !from.is_resolved(leg_a, leg_b, rounding_m)) {
+    const double segment_a = source.a.norm();
+    const double segment_b = source.b.norm();
+    const PlaneEnd from(source, segment_a + segment_b, local);
+    if (!from.section || !from.is_resolved(segment_a, segment_b, rounding_m)) {
         return trace.reject(ShiftRejection::Degenerate);
     }
     const PlaneEnd to(target, change.ratio * from.length + change.offset_m, local);
@@ -56,12 +56,12 @@ std::optional<PlaneShift> shift_on_plane(const Facet& plane,
     const core::Vec2 angle = from.section->angle_of(core::Vec3::Zero());
     PlaneShift shift;
     shift.displacement = to.section->point(angle);
-    const double new_leg_a = (target.a - shift.displacement).norm();
-    const double new_leg_b = (target.b - shift.displacement).norm();
-    if (!to.is_resolved(new_leg_a, new_leg_b, rounding_m)) {
+    const double new_segment_a = (target.a - shift.displacement).norm();
+    const double new_segment_b = (target.b - shift.displacement).norm();
+    if (!to.is_resolved(new_segment_a, new_segment_b, rounding_m)) {
         return trace.reject(ShiftRejection::Degenerate);
     }
-    const double residual = new_leg_a + new_leg_b - to.length;
+    const double residual = new_segment_a + new_segment_b - to.length;
     if (!(std::abs(residual) <= kShiftTolerance * std::min(1.0, to.length))) {
         return trace.reject(ShiftRejection::NotConverged);
     }

@@ -13,7 +13,7 @@ namespace renderer {
 /// Whether a shift is also solved in reverse.
 enum class ReverseCheck { On, Off };
 
-/// Why a shift has no result. Occlusion of the new legs is not checked by the shift.
+/// Why a shift has no result. Occlusion of the new segments is not checked by the shift.
 enum class ShiftRejection {
     BelowMinimum,   ///< no point of the surface's plane, or of space, has a path this short
     Degenerate,     ///< a determinant is zero: near the tangent point or the foci's segment
@@ -60,7 +60,7 @@ struct ShiftCounts {
         return std::accumulate(rejected.begin(), rejected.end(), accepted);
     }
     /// 0 when none was tried.
-    double accepted_share() const {
+    double accepted_fraction() const {
         const std::uint64_t all = tried();
         return all > 0 ? static_cast<double>(accepted) / static_cast<double>(all) : 0.0;
     }

@@ -11,9 +11,9 @@ namespace renderer {
 inline constexpr int kMinFlowSteps = 4;
 inline constexpr int kMaxFlowSteps = 512;
 /// Doubling the steps divides the error by 16: what is left is a sixteenth of these.
-inline constexpr double kFlowChange = 1e-10;  ///< share of the legs
+inline constexpr double kFlowChange = 1e-10;  ///< fraction of the segments
 inline constexpr double kFlowJacobianChange = 1e-8;
-/// The inverse flow must return this close to its start, as a share of the shorter leg.
+/// The inverse flow must return this close to its start, as a fraction of the shorter segment.
 inline constexpr double kFlowReturnTolerance = 1e-7;
 
 /// Where the gradient flow leads from xi, in `steps` steps of the classical Runge-Kutta rule.
@@ -71,7 +71,7 @@ std::optional<ShiftSolution> follow_flow(const Problem& problem,
     if (!is_resolved(at_source, turned(at_source.gradient))) {
         return trace.reject(ShiftRejection::Degenerate);
     }
-    const double legs = at_source.legs_m;
+    const double segments = at_source.segments_m;
     auto coarse = follow_flow(problem, xi, at_source, kMinFlowSteps, trace);
     for (int steps = 2 * kMinFlowSteps; coarse && steps <= kMaxFlowSteps; steps *= 2) {
         auto fine = follow_flow(problem, xi, at_source, steps, trace);
@@ -79,8 +79,8 @@ std::optional<ShiftSolution> follow_flow(const Problem& problem,
         const double moved = (fine->at_target.position - coarse->at_target.position).norm();
         const double residual = fine->at_target.value - at_source.value - problem.change;
         const double allowed =
-            kShiftTolerance * std::min(1.0, legs) * fine->at_target.gradient_size;
-        if (moved <= kFlowChange * legs && std::abs(residual) <= allowed &&
+            kShiftTolerance * std::min(1.0, segments) * fine->at_target.gradient_size;
+        if (moved <= kFlowChange * segments && std::abs(residual) <= allowed &&
             std::abs(fine->jacobian - coarse->jacobian) <= kFlowJacobianChange * fine->jacobian) {
             if (is_resolved(fine->at_target, turned(fine->at_target.gradient))) {
                 return fine;
@@ -103,7 +103,7 @@ std::optional<ShiftSolution> shift_on_charts(const FlowGauge&,
     auto solution = follow_flow(problem, xi, at_source, trace);
     if (!solution || reverse_check == ReverseCheck::Off) return solution;
     const auto back = follow_flow(problem.inverse(), solution->xi, solution->at_target, trace);
-    const double allowed = kFlowReturnTolerance * at_source.shorter_leg_m;
+    const double allowed = kFlowReturnTolerance * at_source.shorter_segment_m;
     if (!back || !((back->at_target.position - at_source.position).norm() <= allowed)) {
         return trace.reject(ShiftRejection::NotReversible);
     }

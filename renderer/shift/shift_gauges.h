@@ -32,7 +32,7 @@ struct ShiftState {
 
 /// The gauges that the solver takes.
 struct EquationGauge {
-    /// Longest last step of the solver, as a share of the reach: the next one would be
+    /// Longest last step of the solver, as a fraction of the reach: the next one would be
     /// quadratically smaller, below rounding.
     static constexpr double kLastStep = 1e-6;
 };

@@ -54,8 +54,8 @@ struct ChartExpansion {
     double h12 = 0.0;
     double h22 = 0.0;
     double gradient_size = 0.0;  ///< what the gradient per metre of movement cannot exceed by much
-    double legs_m = 0.0;         ///< length of the two legs
-    double shorter_leg_m = 0.0;
+    double segments_m = 0.0;     ///< length of the two segments
+    double shorter_segment_m = 0.0;
     double rounding_m = 0.0;  ///< of the position
     core::Vec3 position;      ///< relative to the chart's origin
     ChartMetric metric;
@@ -73,10 +73,10 @@ struct ChartExpansion {
     }
 
     /// How far the conditions f = const and the gauge's, with gradient `gauge`, stay well apart:
-    /// the shorter leg, less where the gradient is small (close to zero near a tangent point) or
-    /// where the two run alongside [m].
+    /// the shorter segment, less where the gradient is small (close to zero near a tangent point)
+    /// or where the two run alongside [m].
     double reach_m(const core::Vec2& gauge) const {
-        return shorter_leg_m * std::abs(cross(gradient, gauge)) /
+        return shorter_segment_m * std::abs(cross(gradient, gauge)) /
                (metric.area_density * gradient_size * norm_of(gauge));
     }
 };
@@ -119,8 +119,8 @@ struct ShiftSide {
         e.h22 *= factor;
         e.metric = ChartMetric::of<Chart::kAffine>(point);
         e.gradient_size = factor * f.gradient_size;
-        e.legs_m = 1.0 / f.inverse_a + 1.0 / f.inverse_y;
-        e.shorter_leg_m = 1.0 / std::max(f.inverse_a, f.inverse_y);
+        e.segments_m = 1.0 / f.inverse_a + 1.0 / f.inverse_y;
+        e.shorter_segment_m = 1.0 / std::max(f.inverse_a, f.inverse_y);
         e.rounding_m = point.rounding_m;
         e.position = point.position;
         e.facet = point.facet;

@@ -14,18 +14,19 @@
 
 namespace renderer {
 
-/// Both residuals end below this [m], and below this share of the legs where they are shorter.
+/// Both residuals end below this [m], and below this fraction of the segments where they are
+/// shorter.
 inline constexpr double kShiftTolerance = 1e-9;
 
-/// Determinants below this share of what the gradients' sizes allow count as zero.
+/// Determinants below this fraction of what the gradients' sizes allow count as zero.
 inline constexpr double kTinyDeterminant = 1e-6;
-/// Legs shorter than this share of both count as zero.
-inline constexpr double kShortestLeg = 1e-6;
-/// With steepness s = reach/leg, coordinates right to e give a solution right to e/s, and from it a
-/// determinant right to e/s over the reach, e/(leg s^2). What is left of the leg must exceed this
-/// many roundings.
+/// Segments shorter than this fraction of both count as zero.
+inline constexpr double kShortestSegment = 1e-6;
+/// With steepness s = reach/segment, coordinates right to e give a solution right to e/s, and from
+/// it a determinant right to e/s over the reach, e/(segment s^2). What is left of the segment must
+/// exceed this many roundings.
 inline constexpr double kFeltRoundings = 1e8;
-/// The reverse solve must come back to within this share of the shorter leg: ten times what
+/// The reverse solve must come back to within this fraction of the shorter segment: ten times what
 /// rounding leaves of ends that count as resolved. Far from the foci many facets fit into that, so
 /// it must be the same facet, too.
 inline constexpr double kReturnTolerance = 1e-7;
@@ -42,8 +43,8 @@ struct ShiftSolution {
 /// Whether an end is far enough from its foci and from tangent points for a meaningful shift.
 inline bool is_resolved(const ChartExpansion& e, const core::Vec2& gauge) {
     const double reach = e.reach_m(gauge);
-    return e.shorter_leg_m > kShortestLeg * e.legs_m &&
-           reach * reach > kFeltRoundings * e.rounding_m * e.shorter_leg_m;
+    return e.shorter_segment_m > kShortestSegment * e.segments_m &&
+           reach * reach > kFeltRoundings * e.rounding_m * e.shorter_segment_m;
 }
 
 /// The solution that a state has reached, unless it is degenerate or folded.
@@ -57,7 +58,8 @@ inline std::optional<ShiftSolution> solution_at(const ShiftState& state,
     const double by_source = cross(state.at_source.gradient, -terms.by_source);
     const auto is_tiny = [](double determinant, const ChartExpansion& e) {
         return !(std::abs(determinant) > kTinyDeterminant * e.gradient_size * e.gradient_size *
-                                             e.metric.area_density * e.legs_m / e.shorter_leg_m);
+                                             e.metric.area_density * e.segments_m /
+                                             e.shorter_segment_m);
     };
     if (is_tiny(by_target, state.at_target) || is_tiny(by_source, state.at_source) ||
         !is_resolved(state.at_target, terms.by_target) ||
@@ -88,13 +90,13 @@ std::optional<ShiftSolution> newton_shift(const Gauge& gauge,
     const auto first_terms = gauge(problem, state);
     if (!first_terms) return trace.reject(ShiftRejection::LeftChart);
     GaugeTerms terms = *first_terms;
-    const double legs = at_source.legs_m;
+    const double segments = at_source.segments_m;
     const double goal = at_source.value + problem.change;
     double last_step = std::numeric_limits<double>::infinity();
     for (int iteration = 0;; ++iteration) {
         const double f1 = state.at_target.value - goal;
         const double tolerance =
-            kShiftTolerance * std::min(1.0, legs) * state.at_target.gradient_size;
+            kShiftTolerance * std::min(1.0, segments) * state.at_target.gradient_size;
         const bool is_small = std::abs(f1) <= tolerance && std::abs(terms.residual) <= tolerance;
         if (is_small && last_step <= Gauge::kLastStep * state.at_target.reach_m(terms.by_target))
             break;
@@ -110,11 +112,11 @@ std::optional<ShiftSolution> newton_shift(const Gauge& gauge,
         if (!std::isfinite(step.x() + step.y())) return trace.reject(ShiftRejection::Degenerate);
 
         const double merit = f1 * f1 + terms.residual * terms.residual;
-        double share = 1.0;
+        double fraction = 1.0;
         bool is_better = false;
-        for (int halving = 0; halving <= kMaxHalvings && !is_better; ++halving, share *= 0.5) {
+        for (int halving = 0; halving <= kMaxHalvings && !is_better; ++halving, fraction *= 0.5) {
             ShiftState next = state;
-            next.xi_new = state.xi_new + share * step;
+            next.xi_new = state.xi_new + fraction * step;
             const auto target = problem.target.at(next.xi_new);
             if (!target) continue;
             next.at_target = *target;
@@ -184,7 +186,7 @@ std::optional<ShiftSolution> shift_on_charts(const Gauge& gauge,
 
     const auto back = newton_shift(
         gauge, problem.inverse(), solution->xi, solution->at_target, *source_at_end, trace);
-    const double allowed = kReturnTolerance * at_source.shorter_leg_m;
+    const double allowed = kReturnTolerance * at_source.shorter_segment_m;
     if (!back || back->at_target.facet != at_source.facet ||
         !((back->at_target.position - at_source.position).norm() <= allowed)) {
         return trace.reject(ShiftRejection::NotReversible);

@@ -121,7 +121,9 @@ void ElementPacker::fill_lane(ElementBlock& block,
         const Vec3 position = node < 3   ? element.corners[node]
                               : node < 6 ? element.midpoint(node - 3)
                                          : center;
-        const double share = node < 3 ? kShareOfCorner : node < 6 ? kShareOfMiddle : kShareOfCenter;
+        const double fraction = node < 3   ? kFractionOfCorner
+                                : node < 6 ? kFractionOfMiddle
+                                           : kFractionOfCenter;
         const Bsdf bsdf = scene_.bsdf_at({position + set_.origin, element.facet});
         const double per = block.response.towards_source ? rules_.laser_spot_m2 : core::kPi;
         double albedo = albedo_of(bsdf);
@@ -130,7 +132,7 @@ void ElementPacker::fill_lane(ElementBlock& block,
             albedo = std::max(albedo, kSchlickMean);
             block.glossy_alpha[lane] = lobe_of(bsdf, 1.0)->alpha;
         }
-        block.mean_reflectance[lane] += share * (albedo / per);
+        block.mean_reflectance[lane] += fraction * (albedo / per);
     }
 }
 

@@ -16,8 +16,9 @@ namespace {
 
 using core::Transient;
 
-constexpr double kSuspiciousShare = 0.05;  // of the target: a difference too small to be believed
-constexpr double kFinerReference = 3.0;    // then: times as many elements
+constexpr double kSuspiciousFraction =
+    0.05;                                // of the target: a difference too small to be believed
+constexpr double kFinerReference = 3.0;  // then: times as many elements
 
 // A reference has an error of its own, and the pairs of the pilot run are not all pairs.
 constexpr double kCaution = 1.5;
@@ -38,11 +39,12 @@ constexpr double kMostCheckRays = 4'194'304.0;
 // finer than the elements of both.
 constexpr double kMissedByCuts = 1.5;
 
-// Errors of elements whose visibility is wrong add up; each may err by this share of the tolerance.
-constexpr double kNegligibleShare = 0.1;
+// Errors of elements whose visibility is wrong add up; each may err by this fraction of the
+// tolerance.
+constexpr double kNegligibleFraction = 0.1;
 
-// Share of the free memory that visibility may take.
-constexpr double kShareOfMemory = 0.5;
+// Fraction of the free memory that visibility may take.
+constexpr double kFractionOfMemory = 0.5;
 
 double relative_difference(const Transient& a, const Transient& b) {
     double sum = 0.0;
@@ -69,10 +71,11 @@ std::vector<std::size_t> spread_indices(std::size_t size, std::size_t count) {
     if (size <= 2 * count) count = size;
     std::vector<std::size_t> indices;
     for (std::size_t i = 0; i < std::min(size, count); ++i) {
-        const double share = (static_cast<double>(i) + 0.5) * kGolden;
-        indices.push_back(count >= size ? i
-                                        : static_cast<std::size_t>(static_cast<double>(size) *
-                                                                   (share - std::floor(share))));
+        const double fraction = (static_cast<double>(i) + 0.5) * kGolden;
+        indices.push_back(count >= size
+                              ? i
+                              : static_cast<std::size_t>(static_cast<double>(size) *
+                                                         (fraction - std::floor(fraction))));
     }
     std::sort(indices.begin(), indices.end());
     indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
@@ -166,15 +169,15 @@ void PilotRuns::for_each_batch(int level,
     }
     if (cuts_.size() == kMaxCuts) cuts_.pop_front();
     subdivider_.cut(tolerance(level), [&](ElementSet&& batch) {
-        if (batch.share < 1.0) return work(batch);
+        if (batch.fraction < 1.0) return work(batch);
         return work(cuts_.emplace_back(level, std::move(batch)).second);
     });
 }
 
 ScanRules PilotRuns::rules(int level) const {
     ScanRules rules;
-    rules.negligible_error = kNegligibleShare * tolerance(level) * norm_per_pair_;
-    rules.memory_bytes = kShareOfMemory * static_cast<double>(core::available_memory_bytes());
+    rules.negligible_error = kNegligibleFraction * tolerance(level) * norm_per_pair_;
+    rules.memory_bytes = kFractionOfMemory * static_cast<double>(core::available_memory_bytes());
     rules.plan = plan_;
     return rules;
 }
@@ -252,7 +255,7 @@ double PilotRuns::error_of(int level) {
     const auto elements = static_cast<double>(run(level).num_elements);
     Pilot& pilot = pilots_.at(level);
     double difference = relative_difference(pilot.transient, pilots_.at(finest).transient);
-    while (difference < kSuspiciousShare * target_ && finest > kFinest - kReferenceSteps &&
+    while (difference < kSuspiciousFraction * target_ && finest > kFinest - kReferenceSteps &&
            finest - 1 > too_fine_.value_or(finest - 2) &&
            static_cast<double>(pilots_.at(finest).num_elements) < kFinerReference * elements) {
         difference = relative_difference(pilot.transient, run(--finest).transient);

@@ -50,8 +50,8 @@ RelevantElements::BlockPoints RelevantElements::of_block(std::uint32_t b) const 
 PointMask RelevantElements::points_reaching(std::uint32_t b, PointMask& crossing) const {
     const auto& [center, radius] = set_.spheres[b];
     LengthBounds other;
-    if (!rules_->other_legs.empty()) {
-        other = rules_->other_legs[b];
+    if (!rules_->other_segments.empty()) {
+        other = rules_->other_segments[b];
     } else if (rules_->other_end) {
         const double distance = (center - rules_->other_end->position).norm();
         other = {distance - radius, distance + radius};
@@ -60,9 +60,9 @@ PointMask RelevantElements::points_reaching(std::uint32_t b, PointMask& crossing
     crossing = 0;
     for (std::size_t begin = 0; begin < WallPointLanes::kSize; begin += Simd::size()) {
         const SimdVec3 away = points_.position.load(begin, center);
-        const Simd leg = core::sqrt(away.dot(away));
-        Simd least = leg - radius;
-        Simd most = leg + radius;
+        const Simd segment = core::sqrt(away.dot(away));
+        Simd least = segment - radius;
+        Simd most = segment + radius;
         if (rules_->other_end) {
             least += other.min_m;
             most += other.max_m;
@@ -106,14 +106,14 @@ SimdGroupMask RelevantElements::simd_groups_within_axis(std::uint32_t b, std::si
         return core::sqrt(d.dot(d));
     };
     const Simd radius = load(block.simd_group_radius_m, 0);
-    const Simd leg = distance(points_.position[p]);
-    Simd least = leg - radius;
-    Simd most = leg + radius;
-    if (!rules_->other_legs.empty()) {
-        least += rules_->other_legs[b].min_m;
-        most += rules_->other_legs[b].max_m;
+    const Simd segment = distance(points_.position[p]);
+    Simd least = segment - radius;
+    Simd most = segment + radius;
+    if (!rules_->other_segments.empty()) {
+        least += rules_->other_segments[b].min_m;
+        most += rules_->other_segments[b].max_m;
     } else {
-        const Simd other = rules_->other_end ? distance(rules_->other_end->position) : leg;
+        const Simd other = rules_->other_end ? distance(rules_->other_end->position) : segment;
         least += other - radius;
         most += other + radius;
     }
@@ -127,12 +127,12 @@ std::uint64_t RelevantElements::lanes_within_axis(std::uint32_t b, std::size_t p
     // For a point x = sum of l_c c over corners c, |x-w|^2 = sum of l_c |c-w|^2 - sum of l_c
     // |c-x|^2, and the last term is at most edge^2/3 ([Jung1901]).
     const double most_below2 = block.longest_edge_m * block.longest_edge_m / 3.0;
-    struct Legs {
+    struct Segments {
         Simd least, most;
     };
     std::uint64_t lanes = 0;
     for_each_simd_group(simd_groups_within_axis(b, p), [&](std::size_t begin) {
-        const auto legs_from = [&](const Vec3& from) {
+        const auto segments_from = [&](const Vec3& from) {
             std::array<Simd, 3> d2;
             for (std::size_t c = 0; c < 3; ++c) {
                 const SimdVec3 d = block.corners[c].load(begin, from);
@@ -140,17 +140,17 @@ std::uint64_t RelevantElements::lanes_within_axis(std::uint32_t b, std::size_t p
             }
             const Simd least2 = core::min(core::min(d2[0], d2[1]), d2[2]) - most_below2;
             const Simd most2 = core::max(core::max(d2[0], d2[1]), d2[2]);
-            return Legs{core::sqrt(core::max(least2, 0.0)), core::sqrt(most2)};
+            return Segments{core::sqrt(core::max(least2, 0.0)), core::sqrt(most2)};
         };
-        const Legs legs = legs_from(points_.position[p]);
-        Legs others = legs;
-        if (!rules_->other_legs.empty()) {
-            others = {rules_->other_legs[b].min_m, rules_->other_legs[b].max_m};
+        const Segments segments = segments_from(points_.position[p]);
+        Segments others = segments;
+        if (!rules_->other_segments.empty()) {
+            others = {rules_->other_segments[b].min_m, rules_->other_segments[b].max_m};
         } else if (rules_->other_end) {
-            others = legs_from(rules_->other_end->position);
+            others = segments_from(rules_->other_end->position);
         }
-        const core::SimdMask within = (opl_begin_m_[p] <= legs.most + others.most) &
-                                      (legs.least + others.least <= opl_end_m_[p]);
+        const core::SimdMask within = (opl_begin_m_[p] <= segments.most + others.most) &
+                                      (segments.least + others.least <= opl_end_m_[p]);
         lanes |= within.bits() << begin;
     });
     return lanes;
@@ -163,7 +163,7 @@ PointMask RelevantElements::points_facing(const ElementBlock& block, std::size_t
     const Vec3 center = block.center[i];
     const Vec3 normal = block.normal[i];
     const bool has_one_end =
-        rules_->other_legs.empty() && rules_->other_end && !block.response.towards_source;
+        rules_->other_segments.empty() && rules_->other_end && !block.response.towards_source;
     if (has_one_end) {
         const Vec3& other_normal = rules_->other_end->normal;
         const Vec3 away = rules_->other_end->position - center;
@@ -181,7 +181,7 @@ PointMask RelevantElements::points_facing(const ElementBlock& block, std::size_t
     return facing;
 }
 
-// Terms (n_w.d) (n_x.d) / |d|^4 of both legs.
+// Terms (n_w.d) (n_x.d) / |d|^4 of both segments.
 RelevantElements::Masses RelevantElements::masses_of(std::uint32_t element) const {
     const ElementBlock& block = set_.blocks[element / ElementBlock::kSize];
     const std::size_t i = element % ElementBlock::kSize;

@@ -20,12 +20,12 @@ enum class ShadowRayPlan {
 
 /// What is known of the paths from some wall points, and the error allowed.
 struct VisibilityRules {
-    /// Path lengths within the axis without the device legs, per point or one for all.
+    /// Path lengths within the axis without the device segments, per point or one for all.
     std::vector<LengthBounds> opl;
     /// The other end of the paths, or one that stands for all of them; empty: confocal.
     std::optional<WallPoint> other_end;
-    /// Per block, bounds of the other end's leg; empty: there is only one other end.
-    std::vector<LengthBounds> other_legs;
+    /// Per block, bounds of the other end's segment; empty: there is only one other end.
+    std::vector<LengthBounds> other_segments;
     double negligible_error = 0.0;  ///< error of a value of H below which no more rays are traced
     /// Number of pairs of each point; retroreflectors return light in one of them.
     double pairs_per_point = 1.0;
@@ -34,7 +34,7 @@ struct VisibilityRules {
     const LengthBounds& opl_of(std::size_t point) const { return opl[opl.size() > 1 ? point : 0]; }
 };
 
-/// Which elements can contribute to the paths from some wall points, visibility aside, and how
+/// Which elements can contribute to the paths from some wall points, visibility ignored, and how
 /// much.
 class RelevantElements {
  public:

@@ -79,9 +79,9 @@ void for_each_simd_group(SimdGroupMask simd_groups, const Work& work) {
 
 /// Weights of corners, edge midpoints and the centre in the mean of a function over a triangle;
 /// exact for cubic functions.
-inline constexpr double kShareOfCorner = 1.0 / 20.0;
-inline constexpr double kShareOfMiddle = 2.0 / 15.0;
-inline constexpr double kShareOfCenter = 9.0 / 20.0;
+inline constexpr double kFractionOfCorner = 1.0 / 20.0;
+inline constexpr double kFractionOfMiddle = 2.0 / 15.0;
+inline constexpr double kFractionOfCenter = 9.0 / 20.0;
 
 /// Holds the corners of all elements of a block; relative to ElementSet::origin.
 struct BlockSphere {
@@ -117,7 +117,7 @@ struct ElementSet {
     AdjacencyLists group_neighbours;
     std::size_t num_elements = 0;
     std::uint32_t first_number = 0;  ///< SurfaceElement::number of the batch's first element
-    double share = 1.0;              ///< of all elements of the cut before any were merged
+    double fraction = 1.0;           ///< of all elements of the cut before any were merged
 };
 
 }  // namespace renderer

@@ -110,7 +110,7 @@ SurfaceSubdivider::SurfaceSubdivider(const Scene& scene,
       boxes_(scan, origin_, scene.stated_rounding_m()),
       visible_sides_(visible_sides(scene.objects(), scan.path_ends())) {}
 
-bool SurfaceSubdivider::is_small_enough(const LegBounds& legs,
+bool SurfaceSubdivider::is_small_enough(const SegmentBounds& segments,
                                         const Vec3& center,
                                         double squared_edge,
                                         double tolerance) const {
@@ -122,8 +122,8 @@ bool SurfaceSubdivider::is_small_enough(const LegBounds& legs,
             squared_edge * (1.0 / light + 1.0 / sensor) / (8.0 * axis_.bin_width_m);
         return kappa <= kKappaPerTolerance * tolerance;
     };
-    const double light = legs.light.min_m;
-    const double sensor = legs.sensor.min_m;
+    const double light = segments.light.min_m;
+    const double sensor = segments.sensor.min_m;
     if (holds(light, sensor)) return true;
     if (!holds(light + boxes_.slack_m(), sensor + boxes_.slack_m())) return false;
     const auto [exact_light, exact_sensor] =
@@ -131,18 +131,20 @@ bool SurfaceSubdivider::is_small_enough(const LegBounds& legs,
     return holds(exact_light, exact_sensor);
 }
 
-bool SurfaceSubdivider::are_within_axis(const LegBounds& legs) const {
-    return legs.light.min_m + legs.sensor.min_m >= axis_.opl_start_m - boxes_.device_legs().max_m &&
-           legs.light.max_m + legs.sensor.max_m <= axis_.opl_end_m() - boxes_.device_legs().min_m;
+bool SurfaceSubdivider::are_within_axis(const SegmentBounds& segments) const {
+    return segments.light.min_m + segments.sensor.min_m >=
+               axis_.opl_start_m - boxes_.device_segments().max_m &&
+           segments.light.max_m + segments.sensor.max_m <=
+               axis_.opl_end_m() - boxes_.device_segments().min_m;
 }
 
 double SurfaceSubdivider::least_parts(const SurfaceElement& element,
-                                      const LegBounds& legs,
+                                      const SegmentBounds& segments,
                                       double tolerance) const {
-    const bool is_whole = boxes_.common_plane() && are_within_axis(legs);
+    const bool is_whole = boxes_.common_plane() && are_within_axis(segments);
     if (!is_whole) return 0.0;
-    const double light = legs.light.max_m;
-    const double sensor = legs.sensor.max_m;
+    const double light = segments.light.max_m;
+    const double sensor = segments.sensor.max_m;
     const double nearest = std::min(light, sensor);
     const double by_size =
         std::min(kSquaredSizePerTolerance * tolerance, kMaxSquaredSize) * nearest * nearest;
@@ -180,8 +182,8 @@ void SurfaceSubdivider::begin_facet(Cutting& cutting) const {
 
 // Appends the next element; false: there is none.
 bool SurfaceSubdivider::cut_next(Cutting& cutting, std::vector<SurfaceElement>& elements) const {
-    const double begin = axis_.opl_start_m - boxes_.device_legs().max_m;
-    const double end = axis_.opl_end_m() - boxes_.device_legs().min_m;
+    const double begin = axis_.opl_start_m - boxes_.device_segments().max_m;
+    const double end = axis_.opl_end_m() - boxes_.device_segments().min_m;
     const auto most = static_cast<double>(limits_.in_all);
     for (;;) {
         if (cutting.parts.empty()) {
@@ -194,12 +196,13 @@ bool SurfaceSubdivider::cut_next(Cutting& cutting, std::vector<SurfaceElement>& 
         const LongestEdge longest = longest_edge(element);
         const Vec3 center = element.center();
         const double reach = reach_of(longest.squared);
-        const LegBounds legs = boxes_.legs(center, reach);
-        if (legs.light.max_m + legs.sensor.max_m < begin) continue;
-        if (legs.light.min_m + legs.sensor.min_m > end) continue;
+        const SegmentBounds segments = boxes_.segments(center, reach);
+        if (segments.light.max_m + segments.sensor.max_m < begin) continue;
+        if (segments.light.min_m + segments.sensor.min_m > end) continue;
         if (boxes_.is_behind(center, reach)) continue;
         const double tolerance = cutting.facet_tolerance;
-        if (depth == kMaxBisections || is_small_enough(legs, center, longest.squared, tolerance)) {
+        if (depth == kMaxBisections ||
+            is_small_enough(segments, center, longest.squared, tolerance)) {
             const auto& [a, b, c] = element.corners;
             if (!(core::triangle_area_vector(a, b, c).squaredNorm() > 0.0)) continue;
             if (cutting.num_elements == limits_.in_all) throw_too_many(limits_.in_all);
@@ -207,7 +210,7 @@ bool SurfaceSubdivider::cut_next(Cutting& cutting, std::vector<SurfaceElement>& 
             elements.back().number = cutting.num_elements++;
             return true;
         }
-        if (cutting.num_elements + least_parts(element, legs, tolerance) > most) {
+        if (cutting.num_elements + least_parts(element, segments, tolerance) > most) {
             throw_too_many(limits_.in_all);
         }
         const std::size_t i = longest.index;
@@ -228,7 +231,7 @@ double SurfaceSubdivider::least_elements(double tolerance) const {
         for (const auto& [triangle, depth] : cutting.parts) {
             const double reach = reach_of(longest_edge(triangle).squared);
             sum += least_parts(
-                triangle, boxes_.legs(triangle.center(), reach), cutting.facet_tolerance);
+                triangle, boxes_.segments(triangle.center(), reach), cutting.facet_tolerance);
         }
         cutting.parts.clear();
     }
@@ -265,14 +268,15 @@ std::vector<std::uint32_t> SurfaceSubdivider::cluster(std::span<const SurfaceEle
     const double max_bins =
         std::sqrt(std::min(kSquaredBinsPerTolerance * tolerance, kMaxSquaredBins));
     const double max_tilt = std::min(kSquaredTiltPerTolerance * tolerance, kMaxSquaredTilt);
-    return cluster_elements(
-        scene_,
-        elements,
-        {max_bins * axis_.bin_width_m, max_tilt},
-        [&](const Vec3& center, double diameter_m) {
-            return is_small_enough(
-                boxes_.legs(center, 0.5 * diameter_m), center, diameter_m * diameter_m, tolerance);
-        });
+    return cluster_elements(scene_,
+                            elements,
+                            {max_bins * axis_.bin_width_m, max_tilt},
+                            [&](const Vec3& center, double diameter_m) {
+                                return is_small_enough(boxes_.segments(center, 0.5 * diameter_m),
+                                                       center,
+                                                       diameter_m * diameter_m,
+                                                       tolerance);
+                            });
 }
 
 void SurfaceSubdivider::cut(double tolerance,
@@ -280,13 +284,13 @@ void SurfaceSubdivider::cut(double tolerance,
     const PackingRules rules{tolerance, laser_spot_m2_, visible_sides_};
     cut_batches(tolerance, [&](Batch& elements, std::size_t num_all) {
         const std::uint32_t first_number = elements.empty() ? 0 : elements[0].number;
-        const double share =
+        const double fraction =
             num_all > 0 ? static_cast<double>(elements.size()) / static_cast<double>(num_all) : 1.0;
         std::vector<std::uint32_t> clusters = cluster(elements, tolerance);
         ElementSet set =
             pack_elements(scene_, scan_, rules, std::move(elements), std::move(clusters));
         set.first_number = first_number;
-        set.share = share;
+        set.fraction = fraction;
         return work(std::move(set));
     });
 }

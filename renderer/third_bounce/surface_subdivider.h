@@ -49,16 +49,16 @@ class SurfaceSubdivider {
     std::size_t min_elements(double tolerance) const;
 
  private:
-    bool is_small_enough(const LegBounds& legs,
+    bool is_small_enough(const SegmentBounds& segments,
                          const core::Vec3& center,
                          double squared_edge,
                          double tolerance) const;
     /// All paths by way of what is seen at these distances have lengths within the axis.
-    bool are_within_axis(const LegBounds& legs) const;
+    bool are_within_axis(const SegmentBounds& segments) const;
     /// At least this many elements cover a triangle, by the size rule at its farthest point; 0
     /// where some parts of it may be left out.
     double least_parts(const SurfaceElement& element,
-                       const LegBounds& legs,
+                       const SegmentBounds& segments,
                        double tolerance) const;
     /// Where cutting stands.
     struct Cutting {

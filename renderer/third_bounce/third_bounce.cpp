@@ -156,7 +156,7 @@ int Integrator::integrate(int level,
                           ThirdBounce& result) {
     std::optional<ThirdBounceScan> scan;
     std::size_t num_elements = 0;
-    double share_before = 0.0;
+    double fraction_before = 0.0;
     bool is_whole_cut = true;
     int part = first_part;
     pilots_.for_each_batch(level, [&](const ElementSet& batch) {
@@ -164,14 +164,14 @@ int Integrator::integrate(int level,
         if (scan && progress.should_stop()) return false;
         if (!scan) scan.emplace(scene_, scan_, axis_, pilots_.rules(level));
         num_elements += batch.num_elements;
-        const auto go_on = [&](double share) {
-            progress.update(share_before + share * batch.share,
+        const auto go_on = [&](double fraction) {
+            progress.update(fraction_before + fraction * batch.fraction,
                             fmt::format("{} elements", num_elements));
             return !progress.should_stop();
         };
         part = scan->integrate(batch, result.transient, first_part, go_on);
-        share_before += batch.share;
-        is_whole_cut = batch.share >= 1.0;
+        fraction_before += batch.fraction;
+        is_whole_cut = batch.fraction >= 1.0;
         return part == ThirdBounceScan::kParts;
     });
     if (!is_whole_cut && part < ThirdBounceScan::kParts) {
@@ -201,7 +201,7 @@ ThirdBounce Integrator::run(const core::Progress& progress) {
     } catch (const core::Failure& failure) {
         const std::optional<double> met = error_within_reach();
         if (!met || *met <= target_) throw;
-        // Not the target itself, of which callers may give the third bounce a share.
+        // Not the target itself, of which callers may give the third bounce a part.
         throw core::Failure(failure.what(),
                             fmt::format("a target error {:.2g} times as large would do",
                                         two_digits_above(*met / target_)));

@@ -107,8 +107,8 @@ NodeWeights glossy_values(const ElementBlock& block,
                                                std::size_t begin,
                                                TriangleLanes& fitted) {
     const Simd corner_mean = (k[0] + k[1] + k[2]) * (1.0 / 3.0);
-    const Simd mean = 3.0 * kShareOfCorner * corner_mean + kShareOfMiddle * (k[3] + k[4] + k[5]) +
-                      kShareOfCenter * k[6];
+    const Simd mean = 3.0 * kFractionOfCorner * corner_mean +
+                      kFractionOfMiddle * (k[3] + k[4] + k[5]) + kFractionOfCenter * k[6];
     const Simd lowest = core::min(core::min(k[0], k[1]), k[2]) - corner_mean;
     Simd spread = 1.0;
     const core::SimdMask falls_below = lowest < -mean;
@@ -139,13 +139,14 @@ template <std::size_t N>
 // Weights of the visible part: the product of two linear functions, replaced by a linear one with
 // the same integral.
 std::array<double, 3> visible_weights(const std::array<double, 3>& weight, VisibilityMask mask) {
-    const std::array<double, 3> share = visible_share(mask);
+    const std::array<double, 3> fraction = visible_fraction(mask);
     std::array<double, 3> product{};
-    for (std::size_t j = 0; j < 3; ++j) product[j] = weight[j] * share[j];
+    for (std::size_t j = 0; j < 3; ++j) product[j] = weight[j] * fraction[j];
     const double sum = product[0] + product[1] + product[2];
     if (!(sum > 0.0)) return {0.0, 0.0, 0.0};
     const double integral =
-        ((weight[0] + weight[1] + weight[2]) * (share[0] + share[1] + share[2]) + sum) / 4.0;
+        ((weight[0] + weight[1] + weight[2]) * (fraction[0] + fraction[1] + fraction[2]) + sum) /
+        4.0;
     for (double& value : product) value *= integral / sum;
     return product;
 }
@@ -199,18 +200,18 @@ void compute_table(const ElementBlock& block,
             const Simd front = core::max(nodes[node].dot(n), 0.0);
             store(front * facing * (per_d2[node] * per_d2[node]), table.factor[node], begin);
         }
-        std::array<Simd, 3> leg;
-        Simd per_leg = 0.0;  // mean
+        std::array<Simd, 3> segment;
+        Simd per_segment = 0.0;  // mean
         for (std::size_t j = 0; j < 3; ++j) {
-            leg[j] = core::sqrt(d2[j]);
-            store(leg[j], table.leg_m[j], begin);
-            per_leg += leg[j] * per_d2[j] * (1.0 / 3.0);
+            segment[j] = core::sqrt(d2[j]);
+            store(segment[j], table.segment_m[j], begin);
+            per_segment += segment[j] * per_d2[j] * (1.0 / 3.0);
         }
-        // The leg's second derivative along an edge is (|edge|^2 - (its rise)^2) / leg.
+        // The segment's second derivative along an edge is (|edge|^2 - (its rise)^2) / segment.
         for (std::size_t j = 0; j < 3; ++j) {
-            const Simd rise = leg[(j + 2) % 3] - leg[(j + 1) % 3];
+            const Simd rise = segment[(j + 2) % 3] - segment[(j + 1) % 3];
             const Simd squared = load(block.squared_edge[j], begin) - rise * rise;
-            store(core::max(squared, 0.0) * per_leg, table.bend_m[j], begin);
+            store(core::max(squared, 0.0) * per_segment, table.bend_m[j], begin);
         }
     });
 }
@@ -229,7 +230,8 @@ void add_pair(const ElementBlock& block,
             for (const VisibilityMask mask : masks) any = static_cast<VisibilityMask>(any | mask);
             if (any == 0) return;
             for (std::size_t c = 0; c < 3; ++c) {
-                store(load(light.table->leg_m[c], begin) + load(sensor.table->leg_m[c], begin),
+                store(load(light.table->segment_m[c], begin) +
+                          load(sensor.table->segment_m[c], begin),
                       fitted.opl_m[c],
                       count);
                 store(load(light.table->bend_m[c], begin) + load(sensor.table->bend_m[c], begin),

@@ -12,9 +12,9 @@ namespace renderer {
 
 /// What one end contributes to all paths by way of the visible elements of a block.
 struct alignas(64) BlockTable {
-    /// Length of the leg at the corners, and how it bends along the edges opposite to them, see
+    /// Length of the segment at the corners, and how it bends along the edges opposite to them, see
     /// TriangleLanes [m].
-    std::array<ElementBlock::Lanes, 3> leg_m, bend_m;
+    std::array<ElementBlock::Lanes, 3> segment_m, bend_m;
     /// (n_w.d) |n_x.d| / |d|^4 at the nodes [1/m^2], 0 behind the wall point.
     std::array<ElementBlock::Lanes, ElementBlock::kNodes> factor;
     /// Distance of the wall point from the element's plane, above 0 on the normal's side [m].
@@ -41,7 +41,7 @@ struct PairEnd {
 /// left out.
 ///
 /// light, sensor   the two ends; the same one twice for a confocal pair
-/// axis            of the histogram, its start reduced by the pair's device legs
+/// axis            of the histogram, its start reduced by the pair's device segments
 /// histogram       axis.num_bins values
 void add_pair(const ElementBlock& block,
               const PairEnd& light,

@@ -81,7 +81,7 @@ SquaredError ThirdBounceScan::squared_visibility_error() const {
 int ThirdBounceScan::integrate(const ElementSet& batch,
                                core::Transient& result,
                                int first_part,
-                               const std::function<bool(double share)>& go_on) {
+                               const std::function<bool(double fraction)>& go_on) {
     squared_shadow_error_of_others_ = squared_shadow_error();
     for (Side* const side : {&lights_, &sensors_}) {
         std::ranges::fill(side->squared_errors, 0.0);
@@ -122,7 +122,7 @@ std::vector<WallPoint> ThirdBounceScan::Side::wall_points(const PointRange& of,
 
 core::TimeAxis ThirdBounceScan::axis_of_pair(std::size_t pair) const {
     core::TimeAxis axis = axis_;
-    axis.opl_start_m -= scan_.device_legs_m(pair);
+    axis.opl_start_m -= scan_.device_segments_m(pair);
     return axis;
 }
 
@@ -131,7 +131,7 @@ void ThirdBounceScan::check(VisibilityCheck& check,
                             const VisibilityCheck::End& light,
                             const VisibilityCheck::End& sensor) {
     if (rules_.check_rays == 0) return;
-    const double num_rays = elements_->share * static_cast<double>(rules_.check_rays);
+    const double num_rays = elements_->fraction * static_cast<double>(rules_.check_rays);
     check.add_differences(
         light,
         sensor,
@@ -203,8 +203,8 @@ VisibilityRules ThirdBounceScan::rules_towards(const Side& others, std::size_t n
     rules.plan = rules_.plan;
     rules.pairs_per_point =
         static_cast<double>(scan_.num_pairs()) / static_cast<double>(num_points);
-    const auto [min_legs, max_legs] = core::device_leg_range_m(scan_);
-    rules.opl.push_back({axis_.opl_start_m - max_legs, axis_.opl_end_m() - min_legs});
+    const auto [min_segments, max_segments] = core::device_segment_range_m(scan_);
+    rules.opl.push_back({axis_.opl_start_m - max_segments, axis_.opl_end_m() - min_segments});
     WallPoint& middle = rules.other_end.emplace(WallPoint{Vec3::Zero(), Vec3::Zero()});
     Eigen::AlignedBox3d box;
     for (std::size_t i = 0; i < others.points.size(); ++i) {
@@ -216,7 +216,7 @@ VisibilityRules ThirdBounceScan::rules_towards(const Side& others, std::size_t n
     if (others.points.size() > 1) {
         for (const auto& [c, radius_m] : elements_->spheres) {
             const Vec3 farthest = (c - box.min()).cwiseAbs().cwiseMax((c - box.max()).cwiseAbs());
-            rules.other_legs.push_back(
+            rules.other_segments.push_back(
                 {box.exteriorDistance(c) - radius_m, farthest.norm() + radius_m});
         }
     }
@@ -240,7 +240,7 @@ void ThirdBounceScan::look_from(Side& side, const PointRange& range, const Visib
 }
 
 int ThirdBounceScan::integrate_pairs(int first_part,
-                                     const std::function<bool(double share)>& go_on) {
+                                     const std::function<bool(double fraction)>& go_on) {
     const auto bytes_per_point = static_cast<double>(elements_->blocks.size() *
                                                      ElementBlock::kSize * sizeof(VisibilityMask));
     const double fitting = rules_.memory_bytes / bytes_per_point;
@@ -261,13 +261,14 @@ int ThirdBounceScan::integrate_pairs(int first_part,
         num_lights, scan_.sensing.size(), static_cast<std::size_t>(std::min(fitting, enough)));
     const VisibilityRules from_lights = rules_towards(sensors_, scan_.illumination.size());
     const VisibilityRules from_sensors = rules_towards(lights_, scan_.sensing.size());
-    constexpr double kShareOfLooking = 0.25;
+    constexpr double kFractionOfLooking = 0.25;
     for (int part = first_part; part < kParts; ++part) {
         for (const PairTiles::Batch& batch :
              tiles.batches(static_cast<std::size_t>(part), kParts)) {
             look_from(lights_, batch.lights, from_lights);
             look_from(sensors_, batch.sensors, from_sensors);
-            if (!go_on(kShareOfLooking + (1.0 - kShareOfLooking) * part / kParts)) return part;
+            if (!go_on(kFractionOfLooking + (1.0 - kFractionOfLooking) * part / kParts))
+                return part;
             core::parallel_for(batch.tiles.size(),
                                [&](std::size_t i) { integrate_tile(batch.tiles[i]); });
         }

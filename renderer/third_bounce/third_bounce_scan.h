@@ -40,14 +40,15 @@ class ThirdBounceScan {
     /// parts [first_part, kParts) of `result`.
     ///
     /// batch     must outlive this or the next call
-    /// go_on     called from the calling thread with the share done after every part; false stops
+    /// go_on     called from the calling thread with the fraction done after every part; false
+    ///           stops
     /// returns   the number of the first part not integrated; kParts: none is left
     /// throws    core::Failure when masks of PairTiles::kMinPoints points take too much memory
     int integrate(
         const ElementSet& batch,
         core::Transient& result,
         int first_part = 0,
-        const std::function<bool(double share)>& go_on = [](double) { return true; });
+        const std::function<bool(double fraction)>& go_on = [](double) { return true; });
 
     TracingCost cost() const { return {num_rays_, tracing_seconds_}; }
     /// Expected squared error of all of H from shadow edges that elements are too coarse for.
@@ -70,7 +71,7 @@ class ThirdBounceScan {
 
     core::TimeAxis axis_of_pair(std::size_t pair) const;
     void integrate_confocal(std::size_t begin, std::size_t end);
-    int integrate_pairs(int first_part, const std::function<bool(double share)>& go_on);
+    int integrate_pairs(int first_part, const std::function<bool(double fraction)>& go_on);
     VisibilityRules rules_towards(const Side& others, std::size_t num_points) const;
     void look_from(Side& side, const PointRange& range, const VisibilityRules& rules);
     void integrate_tile(const PairTiles::Tile& tile);

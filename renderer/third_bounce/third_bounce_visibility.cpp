@@ -72,12 +72,12 @@ void VisibilityTracer::classify() {
     }
 }
 
-// Points for which an error of this share of the mass is not negligible.
+// Points for which an error of this fraction of the mass is not negligible.
 PointMask VisibilityTracer::points_that_matter(const RelevantElements::Masses& masses,
-                                               double share) const {
+                                               double fraction) const {
     PointMask points = 0;
     for (std::size_t p = 0; p < WallPointLanes::kSize; ++p) {
-        const bool matters = share * masses.of_point[p] > negligible_error_;
+        const bool matters = fraction * masses.of_point[p] > negligible_error_;
         points = static_cast<PointMask>(points | std::uint32_t{matters} << p);
     }
     return points;

@@ -47,9 +47,9 @@ class VisibilityTracer {
     const TracingCost& cost() const { return rays_.cost(); }
 
  private:
-    /// Standard deviation of the visible share of an element that a shadow's straight edge crosses,
-    /// known from one part drawn of 16, from one drawn in each quarter, and from all 16 [found by
-    /// simulation].
+    /// Standard deviation of the visible fraction of an element that a shadow's straight edge
+    /// crosses, known from one part drawn of 16, from one drawn in each quarter, and from all 16
+    /// [found by simulation].
     static constexpr double kErrorFromOne = 0.34;
     static constexpr double kErrorFromQuarters = 0.12;
     static constexpr double kErrorFromSixteenths = 0.03;
@@ -72,7 +72,7 @@ class VisibilityTracer {
     };
 
     void classify();
-    PointMask points_that_matter(const RelevantElements::Masses& masses, double share) const;
+    PointMask points_that_matter(const RelevantElements::Masses& masses, double fraction) const;
     void choose_representatives(std::uint32_t block);
     void trace_groups();
     void open_mixed_groups();

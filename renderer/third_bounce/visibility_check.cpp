@@ -11,17 +11,17 @@ using core::load;
 using core::Simd;
 using core::Vec3;
 
-// (n_w.d) (n_x.d) / |d|^4 of one leg, 0 behind the wall point; the sign is that of n_x.d.
-[[gnu::always_inline]] inline Simd leg_terms(const ElementBlock& block,
-                                             std::size_t begin,
-                                             const WallPoint& point) {
+// (n_w.d) (n_x.d) / |d|^4 of one segment, 0 behind the wall point; the sign is that of n_x.d.
+[[gnu::always_inline]] inline Simd segment_terms(const ElementBlock& block,
+                                                 std::size_t begin,
+                                                 const WallPoint& point) {
     const SimdVec3 d = block.center.load(begin, point.position);
     const Simd d2 = d.dot(d);
     const SimdVec3 normal = block.normal.load(begin);
     return core::max(d.dot(point.normal), 0.0) * d.dot(normal) / (d2 * d2);
 }
 
-double leg_term(const WallPoint& from, const Vec3& position, const Vec3& normal) {
+double segment_term(const WallPoint& from, const Vec3& position, const Vec3& normal) {
     const Vec3 d = position - from.position;
     return std::max(0.0, d.dot(from.normal)) * d.dot(normal) / std::pow(d.squaredNorm(), 2);
 }
@@ -70,8 +70,8 @@ void VisibilityCheck::sum_masses(const WallPoint& light, const WallPoint& sensor
         const ElementBlock& block = set_.blocks[b];
         const bool looks_back = block.response.towards_source;
         for (std::size_t begin = 0; begin < ElementBlock::kSize; begin += Simd::size()) {
-            const Simd first = leg_terms(block, begin, light);
-            const Simd second = is_confocal ? first : leg_terms(block, begin, sensor);
+            const Simd first = segment_terms(block, begin, light);
+            const Simd second = is_confocal ? first : segment_terms(block, begin, sensor);
             // Both ends on the same side of the element, and that a reflecting one.
             const core::SimdMask reflects = 0.0 <= -load(block.one_sided, begin) * first;
             Simd mass = looks_back ? core::max(first, -first) : core::max(first * second, 0.0);
@@ -86,7 +86,7 @@ void VisibilityCheck::sum_masses(const WallPoint& light, const WallPoint& sensor
     }
 }
 
-// One for each of equal shares of the mass.
+// One for each of equal fractions of the mass.
 void VisibilityCheck::draw_targets(std::size_t count, core::Rng& rng) {
     targets_.clear();
     auto found = mass_up_to_.begin();
@@ -98,13 +98,13 @@ void VisibilityCheck::draw_targets(std::size_t count, core::Rng& rng) {
         const auto element = static_cast<std::uint32_t>(found - mass_up_to_.begin());
         const double root = std::sqrt(rng.uniform());
         const double last = root * rng.uniform();
-        const std::array<double, 3> share{1.0 - root, root - last, last};
+        const std::array<double, 3> fraction{1.0 - root, root - last, last};
         const ElementBlock& block = set_.blocks[element / ElementBlock::kSize];
         Vec3 position = Vec3::Zero();
         for (std::size_t c = 0; c < 3; ++c) {
-            position += share[c] * block.corners[c][element % ElementBlock::kSize];
+            position += fraction[c] * block.corners[c][element % ElementBlock::kSize];
         }
-        targets_.push_back({element, share, position});
+        targets_.push_back({element, fraction, position});
     }
 }
 
@@ -115,7 +115,7 @@ void VisibilityCheck::trace_from(const WallPoint& point) {
         const std::size_t count =
             std::min<std::size_t>(SegmentPacket::kSize, targets_.size() - begin);
         for (std::size_t i = 0; i < count; ++i) {
-            const auto& [element, share, position] = targets_[begin + i];
+            const auto& [element, fraction, position] = targets_[begin + i];
             const ElementBlock& block = set_.blocks[element / ElementBlock::kSize];
             const Vec3 normal = block.normal[element % ElementBlock::kSize];
             const double rise = std::copysign(block.rise_m[element % ElementBlock::kSize],
@@ -140,11 +140,11 @@ double VisibilityCheck::weight_of(const Target& target,
     const ElementBlock& block = set_.blocks[target.element / ElementBlock::kSize];
     const std::size_t lane = target.element % ElementBlock::kSize;
     const Vec3 normal = block.normal[lane];
-    const double first = leg_term(light, target.position, normal);
+    const double first = segment_term(light, target.position, normal);
     if (block.response.towards_source) {
         return block.mean_reflectance[lane] * std::abs(first);
     }
-    const double both = std::max(0.0, first * leg_term(sensor, target.position, normal));
+    const double both = std::max(0.0, first * segment_term(sensor, target.position, normal));
     if (!block.response.glossy) return block.mean_reflectance[lane] * both;
     const core::Mat3 local_from_world =
         core::frame_from_normal(normal, block.corners[1][lane] - block.corners[0][lane])
@@ -169,9 +169,9 @@ void VisibilityCheck::add(const End& light,
         const auto mask = static_cast<VisibilityMask>(mask_of(light.seen, element) &
                                                       mask_of(sensor.seen, element));
         if (mask == (is_blocked_[i] ? 0 : kAllVisible)) continue;
-        const std::array<double, 3> share = visible_share(mask);
+        const std::array<double, 3> fraction = visible_fraction(mask);
         double difference = is_blocked_[i] ? 0.0 : 1.0;
-        for (std::size_t c = 0; c < 3; ++c) difference -= target.share[c] * share[c];
+        for (std::size_t c = 0; c < 3; ++c) difference -= target.fraction[c] * fraction[c];
         const double opl = (target.position - light.point.position).norm() +
                            (target.position - sensor.point.position).norm();
         const std::optional<int> bin = axis.bin_of(opl);

@@ -52,7 +52,7 @@ class VisibilityCheck {
     /// add up.
     ///
     /// light, sensor   the same one twice for a confocal pair
-    /// axis            of the histogram, its start reduced by the pair's device legs
+    /// axis            of the histogram, its start reduced by the pair's device segments
     /// num_rays        in each set, from each end
     /// rng             of the pair
     void add_differences(const End& light,
@@ -68,8 +68,8 @@ class VisibilityCheck {
     /// A random point of an element.
     struct Target {
         std::uint32_t element;
-        std::array<double, 3> share;  ///< of the corners
-        core::Vec3 position;          ///< relative to ElementSet::origin
+        std::array<double, 3> fraction;  ///< of the corners
+        core::Vec3 position;             ///< relative to ElementSet::origin
     };
 
     void sum_masses(const WallPoint& light, const WallPoint& sensor);

@@ -29,7 +29,7 @@ Slots cumulative_of(const TriangleSplines<double>::Values& values,
                     Gradients gradients) {
     Slots cumulative{};
     for (std::size_t j = 0; j < 3; ++j) {
-        cumulative[0] += 2.0 * values.share[j] * knots.weight[j];
+        cumulative[0] += 2.0 * values.fraction[j] * knots.weight[j];
     }
     if (gradients == Gradients::Without) return cumulative;
     const auto& s = values.gradient;
@@ -38,8 +38,8 @@ Slots cumulative_of(const TriangleSplines<double>::Values& values,
     cumulative[2] = 2.0 * per_m * (s[1] * k[0] + 2.0 * s[3] * k[1] + s[4] * k[2]);
     cumulative[3] = 2.0 * per_m * (s[2] * k[0] + s[4] * k[1] + 2.0 * s[5] * k[2]);
     for (std::size_t j = 0; j < 3; ++j) {
-        cumulative[4 + j] = 2.0 * values.share[j];
-        // Shares depend on (edge, knots) / sigma only, and on differences of these.
+        cumulative[4 + j] = 2.0 * values.fraction[j];
+        // Fractions depend on (edge, knots) / sigma only, and on differences of these.
         cumulative[7] += (edge_m - (knots.opl_m[j] - knots.opl_m[0])) * cumulative[1 + j];
     }
     return cumulative;

@@ -12,8 +12,8 @@ namespace renderer {
 ///
 /// Let p0 <= p1 <= p2 and K0, K1, K2 be positions and weights. The level set p = e cuts the edge
 /// 0-2 at the fraction b = (e-p0)/(p2-p0) and, for e < p1, the edge 0-1 at a = (e-p0)/(p1-p0). The
-/// part below e is the triangle (corner 0, those two cuts), a share a*b of the area, and the mean
-/// of a linear weight over a triangle is the mean of its corner values:
+/// part below e is the triangle (corner 0, those two cuts), a fraction a*b of the area, and the
+/// mean of a linear weight over a triangle is the mean of its corner values:
 ///
 ///     C(e) = a b [K0 + x/3],   x = a (K1-K0) + b (K2-K0),        e <= p1
 ///

@@ -175,9 +175,9 @@ void quarter(const TriangleLanes& lanes,
         Simd position = sag;
         Simd weight = 0.0;
         for (std::size_t m = 0; m < 3; ++m) {
-            const Simd share = load(corner.of_corner[m], 0);
-            position += share * p[m] + load(corner.of_bend[m], 0) * c[m];
-            weight += share * k[m];
+            const Simd fraction = load(corner.of_corner[m], 0);
+            position += fraction * p[m] + load(corner.of_bend[m], 0) * c[m];
+            weight += fraction * k[m];
         }
         store(position, parts.opl_m[j], begin);
         store(weight, parts.weight[j], begin);

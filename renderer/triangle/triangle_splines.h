@@ -16,14 +16,14 @@ namespace renderer {
 /// What smears a triangle's lengths: a Gaussian of standard deviation 1, or nothing.
 enum class Smear { Gaussian, None };
 
-/// Cubic splines on the three knots of a triangle: what share of it, weighted by a barycentric
-/// coordinate, lies below a length, and how that share changes with the knots.
+/// Cubic splines on the three knots of a triangle: what fraction of it, weighted by a barycentric
+/// coordinate, lies below a length, and how that fraction changes with the knots.
 ///
 /// With Phi the cumulative response, l the barycentric coordinates and integrals over the triangle
 /// {l_1 + l_2 <= 1} of area 1/2, Hermite and Genocchi's formula gives divided differences
 ///
-///     share_j = Int l_j Phi(e - l.x) = -[x0,x1,x2,x_j] H3(e - .),   H3''' = Phi,
-///     d share_j / d x_k = -(1 + (j == k)) [x0,x1,x2,x_j,x_k] H3(e - .),
+///     fraction_j = Int l_j Phi(e - l.x) = -[x0,x1,x2,x_j] H3(e - .),   H3''' = Phi,
+///     d fraction_j / d x_k = -(1 + (j == k)) [x0,x1,x2,x_j,x_k] H3(e - .),
 ///
 /// the factor being how often a knot stands in the difference. Past the middle of the knots,
 /// H3(u) = u^3/6 + H3(-u) is used from the other side, so that H3 never grows and little cancels.
@@ -34,8 +34,8 @@ template <class T>
 class TriangleSplines {
  public:
     struct Values {
-        std::array<T, 3> share;
-        /// Of d share_j / d x_k without the factor: symmetric, pairs 00 01 02 11 12 22.
+        std::array<T, 3> fraction;
+        /// Of d fraction_j / d x_k without the factor: symmetric, pairs 00 01 02 11 12 22.
         std::array<T, 6> gradient;
     };
 
@@ -50,7 +50,7 @@ class TriangleSplines {
         if (x_[2] - x_[1] < kMinGap) x_[2] = x_[1] + kMinGap;
     }
 
-    /// Shares below `edge` and, if wanted, their gradients, in the order of the given knots.
+    /// Fractions below `edge` and, if wanted, their gradients, in the order of the given knots.
     void evaluate(double edge, bool with_gradients, Values& values) const {
         const double sign = edge + edge > x_[0] + x_[2] ? -1.0 : 1.0;
         const double base = sign < 0.0 ? 1.0 / 6.0 : 0.0;
@@ -60,7 +60,7 @@ class TriangleSplines {
         } else {
             divide_all(edge, sign, with_gradients, d);
         }
-        for (std::size_t j = 0; j < 3; ++j) values.share[order_[j]] = base - d.third[j];
+        for (std::size_t j = 0; j < 3; ++j) values.fraction[order_[j]] = base - d.third[j];
         if (!with_gradients) return;
         for (std::size_t j = 0; j < 3; ++j) {
             for (std::size_t k = j; k < 3; ++k) {
@@ -241,8 +241,7 @@ class TriangleSplines {
         const std::array<Knot, 3> knots{
             at_knot(x_[0], edge, sign), at_knot(x_[1], edge, sign), at_knot(x_[2], edge, sign)};
         const auto pair = [&](std::size_t i) {
-            if (is_close(x_[i], x_[i + 1], edge))
-                return expand_pair(x_[i], x_[i + 1], edge, sign);
+            if (is_close(x_[i], x_[i + 1], edge)) return expand_pair(x_[i], x_[i + 1], edge, sign);
             return divide_pair(knots[i], knots[i + 1], x_[i + 1] - x_[i], with_gradients);
         };
         const PairDifferences low = pair(0);   // of knots 0 and 1

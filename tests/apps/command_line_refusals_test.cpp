@@ -86,8 +86,9 @@ TEST_F(CommandLine, BadGeometryIsOneLineAndKeepsOlderResults) {
     const std::string out = file("capture.h5");
     const std::string scene = make_scene("scene.json", core::Json::object());
     const std::string glb = file_bytes(file("scene.glb"));
-    for (const double share : {0.0, 0.01, 0.3, 0.7, 0.99}) {
-        write_file_bytes(file("scene.glb"), glb.substr(0, std::size_t(share * double(glb.size()))));
+    for (const double fraction : {0.0, 0.01, 0.3, 0.7, 0.99}) {
+        write_file_bytes(file("scene.glb"),
+                         glb.substr(0, std::size_t(fraction * double(glb.size()))));
         expect_bad_input("render " + scene + " -o " + out, "scene.glb", out);
     }
     write_file_bytes(file("scene.gltf"), R"({"asset": {"version": "2.0"}})");
@@ -102,9 +103,9 @@ TEST_F(CommandLine, BadCapturesAreOneLineAndKeepOlderResults) {
     const std::string scene = make_scene("scene.json", core::Json::object());
     ASSERT_EQ(run("render " + scene + " -o " + file("capture.h5")).status, 0);
     const std::string bytes = file_bytes(file("capture.h5"));
-    for (const double share : {0.0, 0.001, 0.2, 0.6, 0.999}) {
+    for (const double fraction : {0.0, 0.001, 0.2, 0.6, 0.999}) {
         write_file_bytes(file("cut.h5"),
-                         bytes.substr(0, std::size_t(share * double(bytes.size()))));
+                         bytes.substr(0, std::size_t(fraction * double(bytes.size()))));
         expect_bad_input("reconstruct " + file("cut.h5") + " -o " + out, "cut.h5", out);
         expect_bad_input("info " + file("cut.h5"), "cut.h5");
     }

@@ -31,15 +31,15 @@ TEST_F(CommandLine, MeshFilesAreDescribedComparedAndRendered) {
         << info.out;
     EXPECT_EQ(run("compare " + mesh + " " + mesh).status, 0);
 
-    const core::Json stated = {{"geometry", "roof.obj"},
-                               {"geometry_unit_m", 0.001},
-                               {"scan", {{"sensing_points", {4, 4}}}}};
-    const std::string scene = make_scene("scene.json", stated);
+    const core::Json description = {{"geometry", "roof.obj"},
+                                    {"geometry_unit_m", 0.001},
+                                    {"scan", {{"sensing_points", {4, 4}}}}};
+    const std::string scene = make_scene("scene.json", description);
     const Outcome render = run("render " + scene + " -o " + file("roof.h5"));
     EXPECT_EQ(render.status, 0) << render.err;
     EXPECT_EQ(render.err, "");
     const Outcome assumed = run("info " + make_scene("metres.json", {{"geometry", "roof.obj"}}));
-    EXPECT_NE(assumed.out.find("geometry_unit_m states another"), std::string::npos)
+    EXPECT_NE(assumed.out.find("geometry_unit_m gives another"), std::string::npos)
         << assumed.out << assumed.err;
     expect_bad_input("info " + file("gone.stl"), "does not exist");
 }

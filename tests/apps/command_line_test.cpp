@@ -66,7 +66,7 @@ TEST_F(CommandLine, ResponsesOfCapturesAreOffered) {
         run("simulate-noise data/letter.h5 -o " + counts + " --photons 1e6 --jitter-fwhm-ps 100")
             .status,
         0);
-    // Every method takes what the file states, unless it is told otherwise.
+    // Every method takes what the file gives, unless it is told otherwise.
     for (const std::string method : {"auto", "lct", "bp"}) {
         const Outcome used =
             run("reconstruct " + counts + " --method " + method + " -o " + file("v.h5"));
@@ -80,7 +80,7 @@ TEST_F(CommandLine, ResponsesOfCapturesAreOffered) {
     EXPECT_TRUE(nlos::read_volume(file("v.h5")).settings.response.is_none);
     EXPECT_NE(run("info " + counts).out.find("response of 100 ps"), std::string::npos);
     expect_bad_input("reconstruct data/letter.h5 -o " + file("w.h5") + " --set response=capture",
-                     "states no response");
+                     "gives no response");
 }
 
 TEST_F(CommandLine, CalibrationsServeRenderReconstructAndFit) {

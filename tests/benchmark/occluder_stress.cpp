@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // True errors of deterministic third bounces behind occluders of 1 mm to 1 m, against what was
-// asked for and what was stated:
+// asked for and what was given:
 //     occluder_stress <scenes> [<first scene> [<target error>...]]
 // Prints a line per scene and target, then how many errors are above 1, 1.2 and 2 times the target.
 #include "renderer/third_bounce/third_bounce.h"

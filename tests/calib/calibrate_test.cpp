@@ -193,7 +193,7 @@ TEST(Calibrate, AFitThroughTheResultFindsTheHiddenScene) {
     const calib::FitResult fit = calib::fit_scene(input, {});
     ASSERT_TRUE(fit.converged) << fit.message;
     EXPECT_LT((fit.objects[0].position_m - center).norm(), 0.002);
-    // Without the calibration the device's legs are missing, and the light is nowhere near.
+    // Without the calibration the device's segments are missing, and the light is nowhere near.
     EXPECT_ERROR_WITH(calib::fit_scene(test_support::fit_input(counts, start), {}), "time axis");
 }
 

@@ -137,7 +137,7 @@ TEST(Fit, LeavesOutBinsThatWereNotObserved) {
     EXPECT_GT(dark.deviance, dark.expected_deviance + 100.0 * dark.expected_deviance_sigma);
 }
 
-TEST(Fit, FewerPairsCostAccuracyThatIsStated) {
+TEST(Fit, FewerPairsCostAccuracyThatIsReported) {
     const auto capture = counted(expected_capture(truth(), confocal_grid(16), 1e5, 1.0), "Fewer");
     calib::FitInput input = fit_input(capture, displaced());
     const calib::FitResult all = calib::fit_scene(input, {});
@@ -150,7 +150,7 @@ TEST(Fit, FewerPairsCostAccuracyThatIsStated) {
     EXPECT_LT(*calib::compare_fit(few, few.geometry, truth()).position_m, 0.006);
 }
 
-TEST(Fit, StatedErrorsMatchTrueOnesAndDevianceItsExpectation) {
+TEST(Fit, ReportedErrorsMatchTrueOnesAndDevianceItsExpectation) {
     const auto expected = expected_capture(truth(), confocal_grid(8), 1e5, 5.0);
     double squared = 0.0;
     constexpr int kFits = 12;
@@ -210,7 +210,7 @@ TEST(Fit, CountsOfUnknownScaleKeepOneAlbedoAndSayIt) {
     EXPECT_TRUE(test_support::mentions(fit.unidentifiable, "scale with target.albedo"));
 }
 
-TEST(Fit, LeastSquaresStatesTheScaleThatItEliminates) {
+TEST(Fit, LeastSquaresReportsTheScaleThatItEliminates) {
     core::Capture capture = counted(expected_capture(truth(), confocal_grid(8), 1e6, 0.5), "Scale");
     capture.counts_per_radiance.reset();
     calib::FitInput input = fit_input(capture, displaced());

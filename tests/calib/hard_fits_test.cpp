@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Hard cases: each ends in a result whose stated errors are honest, in a warning, or in a refusal.
+// Hard cases: each ends in a result whose reported errors are honest, in a warning, or in a
+// refusal.
 #include "calib/fit.h"
 #include "tests/support/error_message.h"
 #include "tests/support/fit_examples.h"
@@ -194,7 +195,7 @@ TEST(HardFit, OneHundredPhotonsGiveWideErrorsAndSayWhy) {
             test_support::fit_input(counted(light, "Hundred" + std::to_string(seed)),
                                     only(nearby_start(25.0))),
             {});
-        EXPECT_TRUE(test_support::mentions(fit.warnings, "photons: the stated errors"));
+        EXPECT_TRUE(test_support::mentions(fit.warnings, "photons: the reported errors"));
         const calib::FittedObject& object = fit.objects[0];
         EXPECT_GT(object.position_sigma_m.norm(), 0.01);
         const Vec3 error = object.position_m - truth.world_from_node.translation();
@@ -327,8 +328,8 @@ TEST(HardFit, OverlappingObjectsThatHideOneAnotherAreFound) {
     EXPECT_GT(chi_square_p(mean, 24.0), 1e-3) << mean;
 }
 
-// With visibility frozen the errors are up to three times the stated ones, and the fits four times
-// as far off.
+// With visibility frozen the errors are up to three times the reported ones, and the fits four
+// times as far off.
 TEST(HardFit, MovingShadowEdgesCountInFitsAndTheirErrors) {
     Case one = overlapping("ShadowEdges", 10);
     const renderer::Object back = one.truth.objects[1];

@@ -58,8 +58,8 @@ calib::FitInput heights_input(const core::Capture& capture) {
     return input;
 }
 
-// Errors over what the fit states: mean square about 1, 48 values spread by 0.2.
-TEST(Heights, AreFoundWithinTheirStatedErrors) {
+// Errors over what the fit reports: mean square about 1, 48 values spread by 0.2.
+TEST(Heights, AreFoundWithinTheirReportedErrors) {
     const renderer::SceneGeometry flat = grid();
     renderer::SceneGeometry raised = flat;
     renderer::Object& object = raised.objects.front();

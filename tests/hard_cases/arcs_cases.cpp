@@ -42,12 +42,12 @@ Integrals integrate(const std::array<Vec3, 3>& corners) {
                               .cross(QuadVec(corners[2]) - QuadVec(corners[0]));
     const QuadVec normal = cross.normalized();
     Integrals sums;
-    const auto add = [&](Quad share, const std::array<Quad, 3>& b) {
+    const auto add = [&](Quad fraction, const std::array<Quad, 3>& b) {
         const QuadVec d =
             b[0] * QuadVec(corners[0]) + b[1] * QuadVec(corners[1]) + b[2] * QuadVec(corners[2]);
         const Quad r2 = d.dot(d);
         const Quad cosines = d.z * normal.dot(d);
-        const Quad weight = share * cross.norm() / 2 * cosines * cosines / (r2 * r2 * r2 * r2);
+        const Quad weight = fraction * cross.norm() / 2 * cosines * cosines / (r2 * r2 * r2 * r2);
         sums.energy += weight;
         sums.moment += weight * 2 * truth::sqrtq(r2);
     };

@@ -82,7 +82,7 @@ std::vector<double> autodiff_jacobian(const calib::SceneModel& model,
         for (std::size_t edge = 0; edge <= bins; ++edge) {
             splines.evaluate(static_cast<double>(edge) * axis.bin_width_m / sigma_m, false, values);
             Jet cumulative(0.0);
-            for (std::size_t j = 0; j < 3; ++j) cumulative += values.share[j] * weight[j];
+            for (std::size_t j = 0; j < 3; ++j) cumulative += values.fraction[j] * weight[j];
             cumulative *= norm;  // twice the area, of which the barycentric triangle is half
             if (edge > 0) {
                 for (int c = 0; c < 6; ++c) {

@@ -13,7 +13,7 @@ double density_at_the_tangent_point();
 double density_near_the_segment_of_the_foci();
 double density_on_the_segment_of_the_foci();
 double density_beside_a_focus_on_the_surface();
-double drawn_length_of_kilometre_legs();
+double drawn_length_of_kilometre_segments();
 double inverse_of_drawn_vertices();
 double random_connections_that_are_wrong();
 double gradients_of_the_length_beside_a_focus();
@@ -41,7 +41,7 @@ double distances_of_grazing_rays_far_away();
 double coplanar_and_touching_facets_in_the_way();
 
 // time_cases.cpp
-double bins_of_kilometre_legs();
+double bins_of_kilometre_segments();
 double edges_of_tiny_and_huge_bins();
 double edges_of_the_velocity_axis();
 double bounds_of_lengths_over_facets();

@@ -9,8 +9,8 @@ std::vector<HardCase> geometry_rows() {
     return {
         {"path_length_in_all_units",
          "geometry",
-         "legs of 1e-9 m to 1e6 m, up to 1e9 m from the origin, vertices next to a focus",
-         "length of both legs, relative",
+         "segments of 1e-9 m to 1e6 m, up to 1e9 m from the origin, vertices next to a focus",
+         "length of both segments, relative",
          1e-15,
          path_length_in_all_units},
         {"areas_and_normals_of_slivers",

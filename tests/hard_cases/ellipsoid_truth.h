@@ -140,7 +140,7 @@ class Section {
     Quad radius_ = 0;
 };
 
-/// Length of the legs to x.
+/// Length of the segments to x.
 inline Quad opl_of(const renderer::FocusPair& foci, const QuadVec& x) {
     return (x - foci.a).norm() + (x - foci.b).norm();
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Lengths, areas, cosines and rays. Leaks between facets, tiny facets in large scenes and scenes a
 // kilometre away: tests/renderer/scene/ray_caster_test.cpp and third_bounce_test.cpp.
-#include "renderer/path/surface_walk.h"
+#include "renderer/path/random_walk.h"
 #include "tests/hard_cases/cases.h"
 #include "tests/hard_cases/ellipsoid_truth.h"
 #include "tests/hard_cases/hard_case.h"
@@ -80,7 +80,7 @@ double transport_at_grazing_angles() {
         const renderer::Object object = triangle_object(
             centre + Vec3(1, 0, 0), centre + Vec3(-0.5, 1, 0), centre + Vec3(-0.5, -1, 0));
         const renderer::Scene scene = test_support::scene_of({object});
-        const renderer::SurfaceWalk walk(scene, 1e-4);
+        const renderer::RandomWalk walk(scene, 1e-4);
         renderer::PathVertex vertex;
         vertex.point = {centre, 0};
         vertex.normal = scene.facet(0).normal;

@@ -28,8 +28,8 @@ struct Corner {
     Quad weight;
 };
 
-Corner between(const Corner& a, const Corner& b, Quad share) {
-    const auto mix = [&](Quad x, Quad y) { return x + share * (y - x); };
+Corner between(const Corner& a, const Corner& b, Quad fraction) {
+    const auto mix = [&](Quad x, Quad y) { return x + fraction * (y - x); };
     return {mix(a.u, b.u), mix(a.v, b.v), mix(a.opl, b.opl), mix(a.weight, b.weight)};
 }
 
@@ -100,9 +100,9 @@ Quad smeared_cumulative(const std::array<Quad, 3>& opl,
         const Quad low = cuts[i] < -12 ? Quad(-12) : cuts[i];
         const Quad high = cuts[i + 1] > 12 ? Quad(12) : cuts[i + 1];
         if (!(high > low)) continue;
-        for (const auto& [x, share] : kRule) {
+        for (const auto& [x, fraction] : kRule) {
             const Quad t = (low + high + (high - low) * x) / 2;
-            sum += (high - low) / 2 * share * norm * truth::expq(-t * t / 2) *
+            sum += (high - low) / 2 * fraction * norm * truth::expq(-t * t / 2) *
                    cumulative(opl, weight, edge - sigma * t);
         }
     }

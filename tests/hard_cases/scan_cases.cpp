@@ -36,28 +36,29 @@ core::Transform turned_pose(const Vec3& translation) {
 // Third bounce of a patch so small that it is a point: section 8.3 of the design.
 Quad light_of_patch(const core::WallScan& scan,
                     std::size_t pair,
-                    const Vec3& place,
+                    const Vec3& position,
                     const Vec3& normal,
                     double area_m2) {
-    const auto leg = [&](const core::WallPoints& points, std::size_t index) {
-        const QuadVec d = QuadVec(place) - QuadVec(points.positions[index]);
+    const auto segment = [&](const core::WallPoints& points, std::size_t index) {
+        const QuadVec d = QuadVec(position) - QuadVec(points.positions[index]);
         const Quad r2 = d.dot(d);
         const Quad cosine = QuadVec(points.normals[index]).dot(d);
         return cosine > 0 ? cosine * truth::abs(QuadVec(normal).dot(d)) / (r2 * r2) : Quad(0);
     };
     const Quad pi = truth::pi();
     return Quad(kWallAlbedo) * Quad(kWallAlbedo) * Quad(kAlbedo) / (pi * pi * pi) * Quad(area_m2) *
-           leg(scan.illumination, scan.illumination_index(pair)) *
-           leg(scan.sensing, scan.sensing_index(pair));
+           segment(scan.illumination, scan.illumination_index(pair)) *
+           segment(scan.sensing, scan.sensing_index(pair));
 }
 
 // Worst error over all pairs of a scan of a patch of 0.2 mm.
 double patch_error(const core::WallScan& scan) {
-    const Vec3 place(0.1, -0.05, 1.0);
+    const Vec3 position(0.1, -0.05, 1.0);
     const Vec3 u = 2e-4 * Vec3(1.0, 0.1, 0.3);
     const Vec3 v = 2e-4 * Vec3(-0.2, 1.0, -0.1);
     renderer::SceneGeometry geometry;
-    geometry.objects = {test_support::parallelogram_object({place - 0.5 * (u + v), u, v, kAlbedo})};
+    geometry.objects = {
+        test_support::parallelogram_object({position - 0.5 * (u + v), u, v, kAlbedo})};
     renderer::RelayWall wall;
     wall.albedo = kWallAlbedo;
     wall.center_m = Vec3(0, 0, -50);  // the points carry themselves
@@ -74,7 +75,7 @@ double patch_error(const core::WallScan& scan) {
     Worst worst;
     for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
         const Quad expected =
-            light_of_patch(scan, pair, place, area_vector.normalized(), area_vector.norm());
+            light_of_patch(scan, pair, position, area_vector.normalized(), area_vector.norm());
         worst.add(truth::relative_error(light.histogram(pair)[0], expected));
     }
     return worst.value();

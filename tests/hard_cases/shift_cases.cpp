@@ -41,8 +41,9 @@ PlaneTruth shift_on_plane(const renderer::Facet& plane,
         Quad(change.ratio) * to->area_per_opl_and_angle(moved) / from->area_per_opl_and_angle(x)};
 }
 
-// Error of position (by the longer leg) and Jacobian of shifts whose foci stand `distance_m` away,
-// `apart_m` from each other, and move by `moved_m`; lengths grow by a share of the distance.
+// Error of position (by the longer segment) and Jacobian of shifts whose foci stand `distance_m`
+// away, `apart_m` from each other, and move by `moved_m`; lengths grow by a fraction of the
+// distance.
 double plane_shift_error(std::string_view seed, double distance_m, double apart_m, double moved_m) {
     core::Rng rng(test_support::seed_of(seed), 0, 0);
     Worst worst;
@@ -52,8 +53,8 @@ double plane_shift_error(std::string_view seed, double distance_m, double apart_
     for (int i = 0; i < 1000; ++i) {
         const renderer::Facet plane = test_support::make_facet(
             Vec3::Zero(), near(Vec3::UnitX(), 0.3), near(Vec3::UnitY(), 0.3));
-        const Vec3 place = distance_m * Vec3(rng.uniform(), rng.uniform(), 1.0);
-        const FocusPair source{near(place, apart_m), near(place, apart_m)};
+        const Vec3 position = distance_m * Vec3(rng.uniform(), rng.uniform(), 1.0);
+        const FocusPair source{near(position, apart_m), near(position, apart_m)};
         const FocusPair target{near(source.a, moved_m), near(source.b, moved_m)};
         const double ratio = std::array{0.2, 1.0, 5.0}[static_cast<std::size_t>(i % 3)];
         const renderer::ConstraintChange change{
@@ -69,8 +70,8 @@ double plane_shift_error(std::string_view seed, double distance_m, double apart_
 }
 
 struct Derivatives {
-    QuadVec gradient;             // in the plane
-    std::array<QuadVec, 2> legs;  // unit, towards the foci
+    QuadVec gradient;                 // in the plane
+    std::array<QuadVec, 2> segments;  // unit, towards the foci
     std::array<Quad, 2> per_distance;
     QuadVec normal;
 
@@ -80,8 +81,8 @@ struct Derivatives {
         for (const Vec3& focus : {end.a, end.y}) {
             const QuadVec r = QuadVec(focus) - x;
             per_distance[i] = 1 / r.norm();
-            legs[i] = per_distance[i] * r;
-            gradient = gradient - legs[i++];
+            segments[i] = per_distance[i] * r;
+            gradient = gradient - segments[i++];
         }
         gradient = tangential(gradient);
     }
@@ -89,7 +90,7 @@ struct Derivatives {
     QuadVec hessian_times(const QuadVec& t) const {
         QuadVec sum;
         for (std::size_t i = 0; i < 2; ++i) {
-            sum = sum + per_distance[i] * (t - legs[i].dot(t) * legs[i]);
+            sum = sum + per_distance[i] * (t - segments[i].dot(t) * segments[i]);
         }
         return tangential(sum);
     }

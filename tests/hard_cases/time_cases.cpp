@@ -55,7 +55,7 @@ double sum_of(const core::Transient& transient) {
 
 }  // namespace
 
-double bins_of_kilometre_legs() {
+double bins_of_kilometre_segments() {
     core::Rng rng(test_support::seed_of("bins_of_kilometre_legs"), 0, 0);
     Worst worst;
     core::WallScan scan = test_support::confocal_scan({Vec3::Zero()});
@@ -66,7 +66,7 @@ double bins_of_kilometre_legs() {
         const Vec3 p = test_support::random_point(rng);
         const Quad exact = QuadVec(scan.laser_position).norm() +
                            QuadVec(scan.detector_position).norm() + 2 * QuadVec(p).norm();
-        const double opl = scan.device_legs_m(0) + 2.0 * p.norm();
+        const double opl = scan.device_segments_m(0) + 2.0 * p.norm();
         worst.add(truth::relative_error(opl, exact));
         // A bin of 1 mm beyond 1 km is 1e-6 of the length; rounding may move edges by 1e-9 bins.
         const core::TimeAxis axis{std::floor(opl) - 1.0, 0.001, 4000};

@@ -144,7 +144,7 @@ double density_beside_a_focus_on_the_surface() {
     return worst.value(2000);
 }
 
-double drawn_length_of_kilometre_legs() {
+double drawn_length_of_kilometre_segments() {
     core::Rng rng(test_support::seed_of("drawn_length_of_kilometre_legs"), 0, 0);
     Worst worst;
     for (int i = 0; i < 3000; ++i) {
@@ -192,7 +192,7 @@ double gradients_of_the_length_beside_a_focus() {
             test_support::power_of_ten(rng, -12.0, 3.0) * test_support::random_point(rng);
         const Vec3 y =
             test_support::power_of_ten(rng, -12.0, 3.0) * test_support::random_point(rng);
-        // Along the leg, where the Hessian vanishes, and across.
+        // Along the segment, where the Hessian vanishes, and across.
         const Vec3 t =
             i % 2 == 0 ? Vec3(a.normalized()) : test_support::random_point(rng).normalized();
         const LengthErrors e = length_errors(a, y, t);
@@ -223,7 +223,7 @@ double gradients_of_the_velocity_beside_a_focus() {
         const std::array<Vec3, 2> r{
             Vec3(test_support::power_of_ten(rng, -9.0, 3.0) * test_support::random_point(rng)),
             Vec3(test_support::power_of_ten(rng, -9.0, 3.0) * test_support::random_point(rng))};
-        // Along the leg the gradient vanishes.
+        // Along the segment the gradient vanishes.
         const std::array<Vec3, 2> w{
             i % 2 == 0 ? Vec3(3.0 * r[0].normalized()) : test_support::random_point(rng),
             test_support::random_point(rng)};

@@ -23,7 +23,7 @@ using core::Vec3;
 constexpr std::size_t kWallColumns = 24;
 constexpr double kWallPitch_m = 0.04;
 constexpr std::size_t kNumZ = 38;
-const Vec3 kPlace(0.06, -0.1, 0.55);
+const Vec3 kPosition(0.06, -0.1, 0.55);
 const BinRange kGate{60, 132};  // half the bins, with all light of the object
 
 constexpr double kGhosts = 0.05;  // that dead points may add off the object, of its brightness
@@ -43,7 +43,7 @@ class ObservedReconstruction
             capture.scan.wall().illumination = nlos_test::wall_grid({2, 1}, {0.4, 0.4});
         }
         capture.transient = core::Transient(capture.scan.num_pairs(), 144);
-        nlos_test::add_scatterer(capture, kPlace, 4.0);
+        nlos_test::add_scatterer(capture, kPosition, 4.0);
         return capture;
     }
 
@@ -78,7 +78,7 @@ class ObservedReconstruction
             for (std::size_t iy = 0; iy < kWallColumns; ++iy) {
                 for (std::size_t iz = 0; iz < kNumZ; ++iz) {
                     const Vec3 p(volume.axes.x_m[ix], volume.axes.y_m[iy], volume.axes.z_m[iz]);
-                    if ((p - kPlace).norm() < kReach_m) continue;
+                    if ((p - kPosition).norm() < kReach_m) continue;
                     most = std::max(most, double{volume.values[volume.index(ix, iy, iz)]});
                 }
             }
@@ -109,7 +109,7 @@ class ObservedReconstruction
 
         const Volume alive = run(gated).volume;
         const Reconstruction seen = run(masked);
-        EXPECT_LT((nlos_test::brightest_point(seen) - kPlace).norm(), tolerance_m);
+        EXPECT_LT((nlos_test::brightest_point(seen) - kPosition).norm(), tolerance_m);
         EXPECT_LT(ghosts(seen.volume), ghosts(alive) + kGhosts);
         const double with_mask = error(seen.volume, alive);
         const double without = error(run(dark).volume, run(whole).volume);
@@ -175,7 +175,7 @@ INSTANTIATE_TEST_SUITE_P(Methods,
 TEST(DeadPoints, TransformsSayThatTheyTakeDeadPointsForDark) {
     core::Capture capture =
         nlos_test::confocal_capture(nlos_test::wall_grid({16, 16}, {0.05, 0.05}), {0.0, 0.02, 100});
-    nlos_test::add_scatterer(capture, kPlace, 4.0);
+    nlos_test::add_scatterer(capture, kPosition, 4.0);
     std::vector<BinRange> ranges(256, {20, 100});
     core::restrict_observed(capture, ranges);
     const auto says = [&](const nlos_test::MethodCase& method) {

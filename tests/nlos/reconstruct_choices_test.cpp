@@ -77,7 +77,7 @@ TEST(ReconstructChoices, TakesTheSurfaceInFrontOnConfocalGrids) {
     }
 }
 
-TEST(ReconstructChoices, TakesTheSpotThatTheCaptureStates) {
+TEST(ReconstructChoices, TakesTheSpotThatTheCaptureGives) {
     core::Capture capture =
         nlos_test::confocal_capture(nlos_test::wall_grid({8, 8}, {0.05, 0.05}), {0.0, 0.0048, 256});
     const auto spot_m = [&](const std::vector<std::string>& overrides) {

@@ -146,23 +146,23 @@ TEST(Reconstruct, TakesAmbientLightOffCountsAndStopsWhereTheSignalEnds) {
     EXPECT_LT((nlos_test::brightest_point(result) - Vec3(0.075, -0.125, 0.5)).norm(), 0.01);
 }
 
-TEST(Reconstruct, StatesDeviationsOfDepthWhereTheNoiseIsKnown) {
-    const auto num_stated = [](const core::Capture& capture) {
+TEST(Reconstruct, ReportsDeviationsOfDepthWhereTheNoiseIsKnown) {
+    const auto num_reported = [](const core::Capture& capture) {
         const Reconstruction result = reconstruct(capture, {}, {});
         EXPECT_EQ(result.surface_probability.size(), result.depth.depth_m.size());
         return std::ranges::count_if(result.depth_sigma_m,
                                      [](double sigma) { return sigma > 0.0; });
     };
     core::Capture capture = example();
-    EXPECT_EQ(num_stated(capture), 0);
+    EXPECT_EQ(num_reported(capture), 0);
     capture.variance = core::Transient(capture.transient.num_pairs(), capture.time_axis.num_bins);
-    EXPECT_EQ(num_stated(capture), 0);
+    EXPECT_EQ(num_reported(capture), 0);
     std::ranges::fill(capture.variance->values(), 1e-4F);
-    EXPECT_GT(num_stated(capture), 0);
+    EXPECT_GT(num_reported(capture), 0);
     capture.variance.reset();
     capture.unit = core::TransientUnit::Counts;
     for (float& value : capture.transient.values()) value = std::round(50.0F * value);
-    EXPECT_GT(num_stated(capture), 0);
+    EXPECT_GT(num_reported(capture), 0);
 }
 
 TEST(Reconstruct, AutoLooksAtTheCaptureAndSaysWhatItFound) {
@@ -267,10 +267,10 @@ TEST(Reconstruct, WorksInSlabsWhenMemoryIsShort) {
         std::string announced;
         core::Progress progress;
         progress.announce = [&](const std::string& text) { announced = text; };
-        const std::string limit = fmt::format("memory_gb={}", 0.7e-9 * whole.stated_bytes);
+        const std::string limit = fmt::format("memory_gb={}", 0.7e-9 * whole.estimated_bytes);
         const Reconstruction slabs = reconstruct(capture, method.settings({limit}), progress);
         EXPECT_NE(announced.find(" slabs"), std::string::npos) << announced;
-        EXPECT_LT(slabs.stated_bytes, 0.7 * whole.stated_bytes) << method.name;
+        EXPECT_LT(slabs.estimated_bytes, 0.7 * whole.estimated_bytes) << method.name;
         // Single precision, whose rounding dlct raises next to the wall (7e-5 at most seen).
         EXPECT_LT(test_support::relative_l2(slabs.volume.values, whole.volume.values), 1e-3)
             << method.name;
@@ -280,7 +280,7 @@ TEST(Reconstruct, WorksInSlabsWhenMemoryIsShort) {
     EXPECT_THROW(reconstruct(capture, with({"prior=tv", "memory_gb=0.001"}), {}), core::Failure);
 }
 
-TEST(Reconstruct, TakesNoMoreMemoryThanItStates) {
+TEST(Reconstruct, TakesNoMoreMemoryThanItReports) {
 #ifdef __SANITIZE_ADDRESS__
     GTEST_SKIP() << "the address sanitizer keeps memory that was given back";
 #endif
@@ -289,21 +289,21 @@ TEST(Reconstruct, TakesNoMoreMemoryThanItStates) {
     nlos_test::add_scatterer(capture, Vec3(0.075, -0.125, 0.5), 4.0);
     const core::ThreadLimit limit(1);
     constexpr double kSlack_bytes = 16e6;  // of code, plans, depth map and the allocator
-    const auto stated_bytes = [&](const MethodCase& method, const std::string& setting) {
+    const auto estimated_bytes = [&](const MethodCase& method, const std::string& setting) {
         const ReconstructSettings settings =
             method.settings({"merge_bins=1", "volume.z_range_m=[0.4,0.6]", setting});
         core::reset_peak_rss();
         const auto before = static_cast<double>(core::peak_rss_bytes());
         const Reconstruction result = reconstruct(capture, settings, {});
         const double taken = static_cast<double>(core::peak_rss_bytes()) - before;
-        EXPECT_LT(taken, result.stated_bytes + kSlack_bytes) << method.name << " " << setting;
-        EXPECT_GT(result.stated_bytes, 4.0 * static_cast<double>(result.volume.values.size()));
-        return result.stated_bytes;
+        EXPECT_LT(taken, result.estimated_bytes + kSlack_bytes) << method.name << " " << setting;
+        EXPECT_GT(result.estimated_bytes, 4.0 * static_cast<double>(result.volume.values.size()));
+        return result.estimated_bytes;
     };
     for (const MethodCase& method : every_method()) {
-        const double bytes = stated_bytes(method, "solver.max_iterations=2");
+        const double bytes = estimated_bytes(method, "solver.max_iterations=2");
         if (method.iterates()) continue;
-        stated_bytes(method, fmt::format("memory_gb={}", 0.8e-9 * bytes));
+        estimated_bytes(method, fmt::format("memory_gb={}", 0.8e-9 * bytes));
     }
 }
 
@@ -321,9 +321,9 @@ TEST(Reconstruct, ReportsProgressUpToTheEnd) {
     for (const MethodCase& method : every_method()) {
         double last = 0.0;
         core::Progress progress;
-        progress.report = [&](double share, const std::string&) {
-            EXPECT_GE(share, last);
-            last = share;
+        progress.report = [&](double fraction, const std::string&) {
+            EXPECT_GE(fraction, last);
+            last = fraction;
         };
         reconstruct(example(), method.settings(), progress);
         EXPECT_NEAR(last, 1.0, 1e-9) << method.name;

@@ -136,9 +136,9 @@ TEST_P(HardCapture, UnequalPitchOnATurnedWallElsewhere) {
     pose.translate(Vec3(-2.0, 0.7, 4.0));
     pose.rotate(Eigen::AngleAxisd(2.6, Vec3(1.0, -0.4, 0.3).normalized()));
     core::Capture capture = dark_capture({12, 20}, {0.06, 0.03}, {0.0, 0.02, 96}, pose);
-    const Vec3 place = pose * Vec3(0.03, -0.045, 0.42);
-    nlos_test::add_scatterer(capture, place, 4.0);
-    EXPECT_LT((brightest_point(expect_finite(capture, "unequal pitch")) - place).norm(), 0.01);
+    const Vec3 scatterer = pose * Vec3(0.03, -0.045, 0.42);
+    nlos_test::add_scatterer(capture, scatterer, 4.0);
+    EXPECT_LT((brightest_point(expect_finite(capture, "unequal pitch")) - scatterer).norm(), 0.01);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods,

@@ -27,7 +27,7 @@ struct LawCase {
     bool is_non_negative;
     bool is_linear;  ///< where the volume is not cut off at 0
 
-    int num_places() const { return method.iterates() ? 3 : 5; }  ///< tried
+    int num_positions() const { return method.iterates() ? 3 : 5; }  ///< tried
     bool is_wave() const { return method.traits->propagates_wave; }
 };
 
@@ -71,14 +71,15 @@ class ReconstructionLaw : public testing::TestWithParam<LawCase> {
     /// A tenth of a bin in path length, half as much in depth. Methods that iterate gather a point
     /// in one bin of squared range, of which there are as many as bins: anywhere in such a bin is
     /// the same to them.
-    static double depth_tolerance_m(const core::Vec3& place, const core::TimeAxis& axis = kAxis) {
+    static double depth_tolerance_m(const core::Vec3& scatterer,
+                                    const core::TimeAxis& axis = kAxis) {
         const double bin_m2 = std::pow(0.5 * axis.opl_end_m(), 2) / axis.num_bins;
-        const double half_bin_m = bin_m2 / (4.0 * place.z());  // dz = dv / (2 z)
+        const double half_bin_m = bin_m2 / (4.0 * scatterer.z());  // dz = dv / (2 z)
         return 0.05 * axis.bin_width_m + (GetParam().method.iterates() ? half_bin_m : 0.0);
     }
 
     /// A random place straight before a wall point, some columns away from the wall's edges.
-    static core::Vec3 random_place(std::mt19937_64& generator) {
+    static core::Vec3 random_position(std::mt19937_64& generator) {
         std::uniform_int_distribution<int> column(5, kColumns - 6);
         std::uniform_real_distribution<double> depth(0.4, 0.75);
         const auto coordinate = [&] {
@@ -89,9 +90,9 @@ class ReconstructionLaw : public testing::TestWithParam<LawCase> {
         return {x, y, depth(generator)};
     }
 
-    /// Smallest and largest depth at which paths as long as those to `place` meet its column.
+    /// Smallest and largest depth at which paths as long as those to `scatterer` meet its column.
     static std::array<double, 2> depths_of_light(const core::WallScan& scan,
-                                                 const core::Vec3& place,
+                                                 const core::Vec3& scatterer,
                                                  const core::Vec3& column) {
         std::array<double, 2> range{1e300, 0.0};
         for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
@@ -103,7 +104,7 @@ class ReconstructionLaw : public testing::TestWithParam<LawCase> {
             core::Vec3 p = column;
             for (int step = 0; step < 5; ++step) {  // of Newton's method
                 const double slope = (p - l).normalized().z() + (p - s).normalized().z();
-                p.z() -= (length(p) - length(place)) / slope;
+                p.z() -= (length(p) - length(scatterer)) / slope;
             }
             range = {std::min(range[0], p.z()), std::max(range[1], p.z())};
         }

@@ -43,9 +43,9 @@ TEST_P(ReconstructionLaw, SumsOfScenesAreSums) {
     nlos_test::add_scatterer(capture, kSecondPoint, 4.0);
     const core::Transient second = capture.transient;
     const std::vector<float> b = run(capture).volume.values;
-    const auto with_second = [&](float share) {
+    const auto with_second = [&](float fraction) {
         for (std::size_t i = 0; i < first.values().size(); ++i) {
-            capture.transient.values()[i] = first.values()[i] + share * second.values()[i];
+            capture.transient.values()[i] = first.values()[i] + fraction * second.values()[i];
         }
         return run(capture).volume.values;
     };

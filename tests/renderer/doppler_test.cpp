@@ -46,7 +46,7 @@ double mean_velocity(const core::VelocityHistogram& velocity, std::size_t pair) 
     return sum / test_support::sum_of(histogram);
 }
 
-TEST(PathExtent, VelocityIsTheRateAtWhichTheLengthChanges) {
+TEST(OpticalPath, VelocityIsTheRateAtWhichTheLengthChanges) {
     core::Rng rng(test_support::seed_of("PathExtent"), 0, 0);
     const auto random = [&] { return Vec3(rng.uniform(), rng.uniform(), rng.uniform()); };
     for (int trial = 0; trial < 100; ++trial) {
@@ -56,19 +56,20 @@ TEST(PathExtent, VelocityIsTheRateAtWhichTheLengthChanges) {
             points.push_back(random());
             velocities.push_back(random() - random());
         }
-        const auto extent_after = [&](double seconds) {
-            renderer::PathExtent extent;
+        const auto optical_path_after = [&](double seconds) {
+            renderer::OpticalPath optical_path;
             for (std::size_t i = 1; i < points.size(); ++i) {
                 const Vec3 from = points[i - 1] + seconds * velocities[i - 1];
-                extent.add_segment(
+                optical_path.add_segment(
                     points[i] + seconds * velocities[i] - from, velocities[i - 1], velocities[i]);
             }
-            return extent;
+            return optical_path;
         };
         constexpr double kStep_s = 1e-6;
         const double by_difference =
-            (extent_after(kStep_s).opl_m - extent_after(-kStep_s).opl_m) / (2.0 * kStep_s);
-        EXPECT_NEAR(extent_after(0.0).velocity_m_per_s, by_difference, 1e-8);
+            (optical_path_after(kStep_s).opl_m - optical_path_after(-kStep_s).opl_m) /
+            (2.0 * kStep_s);
+        EXPECT_NEAR(optical_path_after(0.0).velocity_m_per_s, by_difference, 1e-8);
     }
 }
 

@@ -144,8 +144,8 @@ TEST(FrameSequence, FirstFrameIsTheRenderWithoutFramesAndNoiseIsNew) {
 TEST(FrameSequence, InterruptionKeepsTheFramesSoFar) {
     int frames_done = 0;
     core::Progress progress;
-    progress.report = [&](double share, const std::string&) {
-        frames_done = static_cast<int>(share * 5.0 + 1e-9);
+    progress.report = [&](double fraction, const std::string&) {
+        frames_done = static_cast<int>(fraction * 5.0 + 1e-9);
     };
     progress.stop_requested = [&] { return frames_done >= 2; };
     const auto result =

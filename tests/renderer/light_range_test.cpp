@@ -56,8 +56,8 @@ TEST(LightRange, IsThatOfAPatchBeforeTheWall) {
     const auto [first, last] = range->without_tails(0.0);
     EXPECT_LE(first, 1.4);
     EXPECT_GE(last, corner - 1e-4);
-    EXPECT_NEAR(range->share_between(1.3, 1.5), 1.0, 1e-12);
-    EXPECT_EQ(range->share_between(1.5, 2.0), 0.0);
+    EXPECT_NEAR(range->fraction_between(1.3, 1.5), 1.0, 1e-12);
+    EXPECT_EQ(range->fraction_between(1.5, 2.0), 0.0);
 }
 
 TEST(LightRange, AutomaticAxesHoldAllThirdBounces) {

@@ -93,7 +93,7 @@ void add_third_bounce(const Ray& l, const Ray& s, double weight, std::vector<dou
     constexpr int kSteps = 12;
     const Vec3 area = kSmallFacet.u.cross(kSmallFacet.v);
     const Vec3 normal = area.normalized();
-    const double legs = (l.point - l.origin).norm() + (s.point - s.origin).norm();
+    const double segments = (l.point - l.origin).norm() + (s.point - s.origin).norm();
     for (int i = 0; i < kSteps * kSteps; ++i) {
         const Vec3 p = kSmallFacet.corner + (i % kSteps + 0.5) / kSteps * kSmallFacet.u +
                        (i / kSteps + 0.5) / kSteps * kSmallFacet.v;
@@ -103,7 +103,7 @@ void add_third_bounce(const Ray& l, const Ray& s, double weight, std::vector<dou
                              core::kPi * area.norm() / (kSteps * kSteps) * (-a.z()) * (-b.z()) *
                              normal.dot(a) * normal.dot(b) /
                              std::pow(a.squaredNorm() * b.squaredNorm(), 2);
-        const double bin = std::floor((legs + a.norm() + b.norm() - kSensorAxis.opl_start_m) /
+        const double bin = std::floor((segments + a.norm() + b.norm() - kSensorAxis.opl_start_m) /
                                       kSensorAxis.bin_width_m);
         if (normal.dot(a) * normal.dot(b) <= 0.0 || bin < 0 || bin >= kSensorAxis.num_bins)
             continue;
@@ -224,9 +224,9 @@ TEST(SensorRender, RetroreflectorsReturnWhatTheLaserSpreads) {
             const Vec3 way = p - s;
             const double form = way.z() * std::abs(area.dot(way)) / (kSteps * kSteps) /
                                 std::pow(way.squaredNorm(), 2);
-            const double legs =
+            const double segments =
                 (s - footprints.laser_m).norm() + (s - footprints.receiver_m).norm();
-            const auto bin = kSensorAxis.bin_of(legs + 2.0 * way.norm());
+            const auto bin = kSensorAxis.bin_of(segments + 2.0 * way.norm());
             if (!bin) continue;
             expected[zone * static_cast<std::size_t>(kSensorAxis.num_bins) +
                      static_cast<std::size_t>(*bin)] +=

@@ -37,8 +37,8 @@ inline StressCounts stress_ellipsoid(std::uint64_t count, std::uint64_t seed) {
         const renderer::Facet facet = make_facet(corner, corner + along, corner + across);
         if (!(facet.area_m2 > 0.0)) continue;
         const renderer::OplBand band = opl_band(foci, facet);
-        const double share = rng.uniform() < 0.3 ? power(-15.0, -1.0) : rng.uniform();
-        const double opl_m = band.low_m + share * band.width_m();
+        const double fraction = rng.uniform() < 0.3 ? power(-15.0, -1.0) : rng.uniform();
+        const double opl_m = band.low_m + fraction * band.width_m();
         renderer::ConnectionLobe lobe;
         lobe.point = facet.point(3.0 * rng.uniform() - 1.0, 3.0 * rng.uniform() - 1.0);
         if (rng.uniform() < 0.1) lobe.point = foci.a;

@@ -113,22 +113,22 @@ double length_of(const renderer::ShiftEnd& end, const Vec3& x) {
 }
 
 // Whether the source lies, as far as rounding can tell, where shifts begin to be refused or to lead
-// elsewhere: one of eight points around it, at 1e-8 legs, fails or ends far from the others.
+// elsewhere: one of eight points around it, at 1e-8 segments, fails or ends far from the others.
 bool is_at_edge(const renderer::ShiftMapping& mapping,
                 const renderer::Facet& facet,
                 const ShiftCase& c,
                 const renderer::ShiftedPath& there) {
-    const double legs = length_of(c.source, c.x.position);
+    const double segments = length_of(c.source, c.x.position);
     const Vec3 across = facet.normal.unitOrthogonal();
     const Vec3 along = facet.normal.cross(across);
-    const double step = 1e-8 * legs + 1e-15 * c.x.position.cwiseAbs().maxCoeff();
+    const double step = 1e-8 * segments + 1e-15 * c.x.position.cwiseAbs().maxCoeff();
     for (int i = 0; i < 8; ++i) {
         ShiftCase next = c;
         const double angle = i * core::kPi / 4.0;
         next.x.position += step * (std::cos(angle) * across + std::sin(angle) * along);
         renderer::ShiftCounts counts;
         const auto moved = shift(mapping, next, counts);
-        if (!moved || (moved->point.position - there.point.position).norm() > 1e-6 * legs) {
+        if (!moved || (moved->point.position - there.point.position).norm() > 1e-6 * segments) {
             return true;
         }
     }
@@ -156,7 +156,7 @@ std::string fault_of(const renderer::Scene& scene,
         return fmt::format("length off by {} of {}", residual, wanted);
     }
     const renderer::Facet& facet = scene.facet(there.point.facet);
-    const double legs = length_of(c.source, c.x.position);
+    const double segments = length_of(c.source, c.x.position);
     const double height = std::abs(facet.normal.dot(x - facet.corner));
     const double size = std::sqrt(facet.area_m2);
     if (!(height <= 1e-9 * size + 4.0 * rounding)) {
@@ -175,10 +175,10 @@ std::string fault_of(const renderer::Scene& scene,
             renderer::kShiftRejectionNames[std::size_t(reason - counts.rejected.begin())]);
     }
     const double distance = (back->point.position - c.x.position).norm();
-    if (!(distance <= 1e-6 * legs)) return fmt::format("comes back {} away", distance);
+    if (!(distance <= 1e-6 * segments)) return fmt::format("comes back {} away", distance);
     const double product = there.jacobian * back->jacobian;
-    const double leg = std::min((c.target.a - x).norm(), (c.target.y - x).norm());
-    if (!(std::abs(product - 1.0) <= 1e-6 + 200.0 * rounding / leg))
+    const double segment = std::min((c.target.a - x).norm(), (c.target.y - x).norm());
+    if (!(std::abs(product - 1.0) <= 1e-6 + 200.0 * rounding / segment))
         return fmt::format("J_f J_r = {}", product);
     return "";
 }

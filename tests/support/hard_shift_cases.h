@@ -20,10 +20,10 @@ enum class HardShift {
     NearTangentPoint,  ///< x where the plane mirrors one focus to the other
     NearSegment,       ///< x close to the straight line between the foci
     CoincidentFoci,    ///< equal, or apart by next to nothing
-    LargeMove,         ///< foci and length change by a good part of the legs: second roots
+    LargeMove,         ///< foci and length change by a good part of the segments: second roots
     EdgeOn,            ///< foci next to or in the facet's plane
     FocusOnSurface,    ///< x next to a focus
-    FociFarAway,       ///< legs of a thousand scene sizes, or a kilometre
+    FociFarAway,       ///< segments of a thousand scene sizes, or a kilometre
     ShortestLength,    ///< the new length within rounding of the shortest possible
 };
 inline constexpr std::array<std::string_view, 9> kHardShiftNames{"generic",
@@ -47,7 +47,7 @@ class HardShiftBench {
         std::array<std::uint64_t, kHardShiftNames.size()> tried{};
         std::array<std::uint64_t, kHardShiftNames.size()> accepted{};
         /// Accepted, while the way back is refused because rounding decides there: the source lies
-        /// within 1e-8 of the legs of points that cannot be shifted, or lead elsewhere.
+        /// within 1e-8 of the segments of points that cannot be shifted, or lead elsewhere.
         std::uint64_t at_edge = 0;
         std::uint64_t wrong = 0;
         std::string first_wrong;  ///< what was wrong with the first one

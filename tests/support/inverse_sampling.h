@@ -14,19 +14,19 @@ inline core::Vec2 invert_triangle(const core::Vec2& barycentric) {
     return {root * root, root > 0.0 ? barycentric.y() / root : 0.0};
 }
 
-inline double azimuth_share(const core::Vec3& direction) {
-    const double share = std::atan2(direction.y(), direction.x()) / (2.0 * core::kPi);
-    return std::min(share < 0.0 ? share + 1.0 : share, core::kBelowOne);
+inline double azimuth_fraction(const core::Vec3& direction) {
+    const double fraction = std::atan2(direction.y(), direction.x()) / (2.0 * core::kPi);
+    return std::min(fraction < 0.0 ? fraction + 1.0 : fraction, core::kBelowOne);
 }
 
 /// The u that core::sample_cosine_hemisphere maps to `direction`.
 inline core::Vec2 invert_cosine_hemisphere(const core::Vec3& direction) {
-    return {direction.head<2>().squaredNorm(), azimuth_share(direction)};
+    return {direction.head<2>().squaredNorm(), azimuth_fraction(direction)};
 }
 
 /// The u that core::sample_sphere maps to `direction`.
 inline core::Vec2 invert_sphere(const core::Vec3& direction) {
-    return {0.5 * (1.0 - direction.z()), azimuth_share(direction)};
+    return {0.5 * (1.0 - direction.z()), azimuth_fraction(direction)};
 }
 
 /// The u for which sample_ellipsoid() at the length of `x` gives `x`, without a lobe; nothing where

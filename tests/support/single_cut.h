@@ -12,7 +12,7 @@ inline renderer::ElementSet single_cut(const renderer::SurfaceSubdivider& subdiv
                                        double tolerance) {
     renderer::ElementSet only;
     subdivider.cut(tolerance, [&](renderer::ElementSet&& batch) {
-        EXPECT_EQ(batch.share, 1.0);
+        EXPECT_EQ(batch.fraction, 1.0);
         only = std::move(batch);
         return true;
     });

@@ -70,7 +70,7 @@ BinAgreement bin_agreement_of(const core::Transient& truth,
                               const std::vector<core::Transient>& runs,
                               std::array<std::size_t, 2> grid,
                               std::size_t block,
-                              double least_share,
+                              double least_fraction,
                               double systematic) {
     BinAgreement result;
     std::vector<double> of_runs;
@@ -91,7 +91,7 @@ BinAgreement bin_agreement_of(const core::Transient& truth,
             }
             const double all = sum_of(expected, 0, expected.size());
             std::size_t begin = 0;
-            for (const std::size_t end : cell_ends(expected, least_share * all)) {
+            for (const std::size_t end : cell_ends(expected, least_fraction * all)) {
                 for (std::size_t r = 0; r < runs.size(); ++r) {
                     of_runs[r] = sum_of(found[r], begin, end);
                 }

@@ -21,15 +21,15 @@ struct BinAgreement {
 
 /// Compares runs with the truth, cell by cell.
 ///
-/// A cell is `block` times `block` wall points by as many neighbouring bins as hold `least_share`
-/// of that block's true light: so many paths fall into it that the mean of the runs is normally
-/// distributed. Its score is the mean of the runs less the truth over the standard error that the
-/// runs' own spread says, Student's t turned into a normal score.
+/// A cell is `block` times `block` wall points by as many neighbouring bins as hold
+/// `least_fraction` of that block's true light: so many paths fall into it that the mean of the
+/// runs is normally distributed. Its score is the mean of the runs less the truth over the standard
+/// error that the runs' own spread says, Student's t turned into a normal score.
 ///
 /// truth        one histogram per wall point of a grid, stored [x][y]
 /// runs         of the same shape, from independent seeds; at least 8
 /// grid         extents along x and y, multiples of `block`
-/// systematic   share of the light that the runs may be off by for known reasons
+/// systematic   fraction of the light that the runs may be off by for known reasons
 /// returns      cells without any light in truth and runs do not count; one that only the runs
 ///              light has an infinite score
 /// source       normal scores of Student's t: Abramowitz and Stegun 1964, 26.7.8
@@ -37,7 +37,7 @@ BinAgreement bin_agreement_of(const core::Transient& truth,
                               const std::vector<core::Transient>& runs,
                               std::array<std::size_t, 2> grid,
                               std::size_t block,
-                              double least_share,
+                              double least_fraction,
                               double systematic = 0.0);
 
 /// The magnitude that the largest of so many normal scores exceeds with probability `level`.

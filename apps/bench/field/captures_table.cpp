@@ -89,7 +89,7 @@ std::vector<KnownCapture> read_known_captures(const std::string& folder) {
     return captures;
 }
 
-std::vector<CaptureRow> measure_captures(Contenders& contenders,
+std::vector<CaptureRow> measure_captures(Baselines& baselines,
                                          const std::string& folder,
                                          const core::Progress& progress,
                                          std::map<std::string, BenchPicture>& pictures) {
@@ -103,10 +103,10 @@ std::vector<CaptureRow> measure_captures(Contenders& contenders,
         const std::string pattern(capture.scan.name());
         const std::string name = fmt::format("capture_{}", c + 1);
         SharedCapture shared(
-            contenders, name, name, capture, {kNearest_m, farthest_m, std::nullopt});
+            baselines, name, name, capture, {kNearest_m, farthest_m, std::nullopt});
         std::vector<nlos::Panel> panels;
         for (const ReconstructionMethod& method : reconstruction_methods()) {
-            progress.update(share_of(c, known.size()),
+            progress.update(fraction_of(c, known.size()),
                             fmt::format("{}, {} {}", one.name, method.program, method.method));
             CaptureRow row{one.name, pattern, method.program, method.method, one.depth_m};
             const MethodVolume result = shared.run(method);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "apps/bench/field/contenders.h"
+#include "apps/bench/field/baselines.h"
 #include "apps/bench/output.h"
 #include "nlos/layouts/capture_settings.h"
 #include "renderer/core/progress.h"
@@ -65,7 +65,7 @@ NLOS_FIGURES(CaptureRow,
 /// known distance. Bins are added up to half the wall points' distance first.
 ///
 /// pictures   gets maximum projections side by side, by the end of their files' names
-std::vector<CaptureRow> measure_captures(Contenders& contenders,
+std::vector<CaptureRow> measure_captures(Baselines& baselines,
                                          const std::string& folder,
                                          const core::Progress& progress,
                                          std::map<std::string, BenchPicture>& pictures);

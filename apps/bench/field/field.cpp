@@ -137,11 +137,11 @@ BenchResult measure_field(const FieldSettings& settings,
     if (!settings.captures.empty())
         read_known_captures(settings.captures);  // before an hour has passed
     std::filesystem::create_directories(folder);
-    Contenders contenders(settings.peers, folder, settings.limit_s);
+    Baselines baselines(settings.peers, folder, settings.limit_s);
     BenchResult result{core::Json::object()};
     std::vector<Loss> losses;
     if (wants("reconstruct")) {
-        const std::vector<ReconstructionRow> rows = measure_reconstructions(contenders,
+        const std::vector<ReconstructionRow> rows = measure_reconstructions(baselines,
                                                                             settings.sensing_points,
                                                                             settings.quick,
                                                                             progress.part(0.0, 0.5),
@@ -154,7 +154,7 @@ BenchResult measure_field(const FieldSettings& settings,
     }
     if (wants("render")) {
         const RenderingTable table = measure_renderings(
-            contenders, settings.sensing_points, settings.quick, progress.part(0.5, 0.9));
+            baselines, settings.sensing_points, settings.quick, progress.part(0.5, 0.9));
         result.figures["rendering"] = core::write_value(table.summaries);
         std::ranges::move(find_losses(table.summaries), std::back_inserter(losses));
         result.figures["rendering_runs"] = core::write_value(table.rows);
@@ -165,10 +165,10 @@ BenchResult measure_field(const FieldSettings& settings,
     result.figures["losses"] = core::write_value(losses);
     if (wants("captures") && !settings.captures.empty()) {
         result.figures["captures"] = core::write_value(measure_captures(
-            contenders, settings.captures, progress.part(0.9, 1.0), result.pictures));
+            baselines, settings.captures, progress.part(0.9, 1.0), result.pictures));
     }
-    if (!contenders.versions().empty()) {
-        result.figures["peers"] = fmt::format("{}", fmt::join(contenders.versions(), ", "));
+    if (!baselines.versions().empty()) {
+        result.figures["peers"] = fmt::format("{}", fmt::join(baselines.versions(), ", "));
     }
     return result;
 }

@@ -9,7 +9,7 @@ namespace apps {
 namespace {
 
 const std::string kOurs = "nlos";
-constexpr double kAlike = 0.02;  // shares by which figures may differ and still be called level
+constexpr double kAlike = 0.02;  // fractions by which figures may differ and still be called level
 
 struct ComparedFigure {
     const char* name;

@@ -13,18 +13,18 @@ namespace {
 
 // Whether every edge has a triangle on either side.
 bool is_closed(const core::TriangleMesh& mesh) {
-    // Vertices that stand at one place are one.
-    std::map<std::array<double, 3>, std::uint32_t> places;
-    std::vector<std::uint32_t> place_of;
+    // Vertices that stand at one position are one.
+    std::map<std::array<double, 3>, std::uint32_t> positions;
+    std::vector<std::uint32_t> position_of;
     for (const core::Vec3& v : mesh.vertices) {
-        const auto number = static_cast<std::uint32_t>(places.size());
-        place_of.push_back(places.try_emplace({v.x(), v.y(), v.z()}, number).first->second);
+        const auto number = static_cast<std::uint32_t>(positions.size());
+        position_of.push_back(positions.try_emplace({v.x(), v.y(), v.z()}, number).first->second);
     }
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> surplus;  // of an edge over its reverse
     for (const auto& triangle : mesh.triangles) {
         for (std::size_t i = 0; i < 3; ++i) {
-            const std::uint32_t a = place_of[triangle[i]];
-            const std::uint32_t b = place_of[triangle[(i + 1) % 3]];
+            const std::uint32_t a = position_of[triangle[i]];
+            const std::uint32_t b = position_of[triangle[(i + 1) % 3]];
             surplus[std::minmax(a, b)] += a < b ? 1 : -1;
         }
     }

@@ -24,7 +24,7 @@ core::DepthMap peak_depths(const nlos::Volume& volume) {
     for (std::size_t c = 0; c < depth.depth_m.size(); ++c) {
         const std::span<const float> column(volume.values.data() + c * num_depths, num_depths);
         const auto highest = std::max_element(column.begin(), column.end());
-        if (!(double{*highest} > kPeakShare * double{brightest})) continue;
+        if (!(double{*highest} > kPeakFraction * double{brightest})) continue;
         const auto voxel = static_cast<std::size_t>(highest - column.begin());
         depth.depth_m[c] = axes.z_m.front() + pitch_m * nlos::find_peak(column, voxel).position;
     }

@@ -7,13 +7,13 @@
 
 namespace apps {
 
-/// The share of the brightest voxel from which on a column counts as surface, as the field does.
-inline constexpr double kPeakShare = 0.2;
+/// The fraction of the brightest voxel from which on a column counts as surface, as the field does.
+inline constexpr double kPeakFraction = 0.2;
 
 /// The depth of every column's brightest voxel, between voxels by a parabola (see find_peak()), the
 /// same for every method whatever it says itself of its surface.
 ///
-/// returns   NaN in columns that stay below kPeakShare
+/// returns   NaN in columns that stay below kPeakFraction
 core::DepthMap peak_depths(const nlos::Volume& volume);
 
 /// The volume that a peer wrote: `volume` (X, Y, Z), and `z_m` where its depths are its own.

@@ -97,8 +97,8 @@ void score(const MethodVolume& result, const core::DepthMap& truth, Reconstructi
     row.depth_coverage = peaks.depth_coverage;
     row.iou = peaks.mask_iou;
     row.iou_best = peaks.mask_iou_best;
-    if (result.stated.depth_m.empty()) return;
-    scored.depth = result.stated;
+    if (result.reported.depth_m.empty()) return;
+    scored.depth = result.reported;
     row.stated_mae_mm = times(nlos::compare_to_truth(scored, truth).depth_mae_m, 1e3);
 }
 
@@ -157,13 +157,13 @@ Panel projection_panel(const ReconstructionMethod& method, const nlos::Volume& v
     return panel;
 }
 
-SharedCapture::SharedCapture(Contenders& contenders,
+SharedCapture::SharedCapture(Baselines& baselines,
                              const std::string& name,
                              std::string kind,
                              const core::Capture& capture,
                              const DepthPlanes& planes)
-    : contenders_(contenders),
-      stem_(contenders.folder() + "/" + name),
+    : baselines_(baselines),
+      stem_(baselines.folder() + "/" + name),
       kind_(std::move(kind)),
       planes_(planes),
       // The wavelength that our phasor field takes.
@@ -195,11 +195,11 @@ MethodVolume SharedCapture::run_own(const ReconstructionMethod& method) {
     if (planes_.count) {
         arguments.push_back(fmt::format("volume.voxels=[{0},{0},{1}]", columns_, *planes_.count));
     }
-    result.run = contenders_.run_own(kind_ + " " + method.method, arguments);
+    result.run = baselines_.run_own(kind_ + " " + method.method, arguments);
     if (!result.run.failure.empty()) return result;
     nlos::Reconstruction found = nlos::read_volume(path);
     result.volume = std::move(found.volume);
-    result.stated = std::move(found.depth);
+    result.reported = std::move(found.depth);
     // Its voxels are those of the peers, which run last.
     if (method.method == core::enum_name(nlos::kBp.method)) axes_ = result.volume.axes;
     return result;
@@ -218,17 +218,17 @@ MethodVolume SharedCapture::run_peer(const ReconstructionMethod& method) {
         pose.push_back({values[0], values[1], values[2], values[3]});
     }
     constexpr double kMemoryGb = 8.0;
-    result.run = contenders_.run_peer(kind_ + " " + method.method,
-                                      method.adapter,
-                                      {{"method", method.method},
-                                       {"capture", stem_ + "_for_ytal.h5"},
-                                       {"output", path},
-                                       {"x_m", axes_->x_m},
-                                       {"y_m", axes_->y_m},
-                                       {"z_m", axes_->z_m},
-                                       {"world_from_wall", pose},
-                                       {"wavelength_m", wavelength_m_},
-                                       {"memory_gb", kMemoryGb}});
+    result.run = baselines_.run_peer(kind_ + " " + method.method,
+                                     method.adapter,
+                                     {{"method", method.method},
+                                      {"capture", stem_ + "_for_ytal.h5"},
+                                      {"output", path},
+                                      {"x_m", axes_->x_m},
+                                      {"y_m", axes_->y_m},
+                                      {"z_m", axes_->z_m},
+                                      {"world_from_wall", pose},
+                                      {"wavelength_m", wavelength_m_},
+                                      {"memory_gb", kMemoryGb}});
     if (!result.run.failure.empty()) return result;
     try {
         result.volume = read_peer_volume(path, *axes_);
@@ -239,7 +239,7 @@ MethodVolume SharedCapture::run_peer(const ReconstructionMethod& method) {
 }
 
 std::vector<ReconstructionRow> measure_reconstructions(
-    Contenders& contenders,
+    Baselines& baselines,
     int points,
     bool quick,
     const core::Progress& progress,
@@ -260,14 +260,14 @@ std::vector<ReconstructionRow> measure_reconstructions(
             return truth;
         };
         for (const std::string& light : task.lights) {
-            SharedCapture capture(contenders,
+            SharedCapture capture(baselines,
                                   task.name() + "_" + light,
                                   task.kind(),
                                   lit_capture(clean, light),
                                   DepthPlanes{});
             std::vector<Panel> panels;
             for (const ReconstructionMethod& method : reconstruction_methods()) {
-                progress.update(share_of(t, tasks.size()),
+                progress.update(fraction_of(t, tasks.size()),
                                 fmt::format("{} {}, {}", task.name(), light, method.method));
                 ReconstructionRow row{
                     task.scene, task.pattern, task.points, light, method.program, method.method};
@@ -298,12 +298,12 @@ std::vector<ReconstructionSummary> summarise(const std::vector<ReconstructionRow
                    s.method == row.method;
         };
         const auto it = std::ranges::find_if(summaries, same);
-        const auto place = static_cast<std::size_t>(it - summaries.begin());
+        const auto index = static_cast<std::size_t>(it - summaries.begin());
         if (it == summaries.end()) {
             summaries.push_back({row.pattern, row.points, row.program, row.method});
             groups.emplace_back();
         }
-        groups[place].push_back(&row);
+        groups[index].push_back(&row);
     }
     for (std::size_t i = 0; i < summaries.size(); ++i) {
         ReconstructionSummary& summary = summaries[i];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "apps/bench/field/contenders.h"
+#include "apps/bench/field/baselines.h"
 #include "apps/bench/output.h"
 #include "nlos/pictures/panel.h"
 #include "nlos/reconstruction/volume.h"
@@ -35,7 +35,7 @@ struct ReconstructionRow {
     std::string program{};                   ///< whose method
     std::string method{};                    ///< its name there
     std::optional<double> depth_mae_mm{};    ///< over columns above a fifth of the brightest voxel
-    std::optional<double> depth_coverage{};  ///< share of the true columns that these are
+    std::optional<double> depth_coverage{};  ///< fraction of the true columns that these are
     std::optional<double> iou{};             ///< of their mask
     std::optional<double> iou_best{};        ///< of the mask at the best threshold
     std::optional<double> stated_mae_mm{};   ///< over columns that the method itself gives a depth
@@ -111,15 +111,15 @@ struct DepthPlanes {
 /// A method's volume of a capture file, with what it took.
 struct MethodVolume {
     FieldRun run;
-    nlos::Volume volume;    ///< empty where the run failed
-    core::DepthMap stated;  ///< depths that the method itself states; empty for peers
+    nlos::Volume volume;      ///< empty where the run failed
+    core::DepthMap reported;  ///< depths that the method itself reports; empty for peers
 };
 
 /// A capture for all methods: the file, the same for y-tal, and the voxels they are to fill.
 class SharedCapture {
  public:
     /// kind     names runs that take alike
-    SharedCapture(Contenders& contenders,
+    SharedCapture(Baselines& baselines,
                   const std::string& name,
                   std::string kind,
                   const core::Capture& capture,
@@ -133,7 +133,7 @@ class SharedCapture {
     MethodVolume run_own(const ReconstructionMethod& method);
     MethodVolume run_peer(const ReconstructionMethod& method);
 
-    Contenders& contenders_;
+    Baselines& baselines_;
     std::string stem_;
     std::string kind_;
     DepthPlanes planes_;
@@ -152,7 +152,7 @@ nlos::Panel projection_panel(const ReconstructionMethod& method, const nlos::Vol
 /// quick     the letter alone: confocal without noise and at 20 counts, single without noise
 /// pictures  gets maximum projections side by side, by the end of their files' names
 std::vector<ReconstructionRow> measure_reconstructions(
-    Contenders& contenders,
+    Baselines& baselines,
     int points,
     bool quick,
     const core::Progress& progress,

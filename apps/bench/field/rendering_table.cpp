@@ -79,7 +79,7 @@ void compare_with_ours(std::vector<RenderingSummary>& of_task) {
 
 }  // namespace
 
-RenderingTable measure_renderings(Contenders& contenders,
+RenderingTable measure_renderings(Baselines& baselines,
                                   int points,
                                   bool quick,
                                   const core::Progress& progress) {
@@ -87,10 +87,10 @@ RenderingTable measure_renderings(Contenders& contenders,
     const std::vector<RenderedScene> tasks = rendered_scenes(points, quick);
     for (std::size_t t = 0; t < tasks.size(); ++t) {
         const auto begin = [&](const std::string& what) {
-            progress.update(share_of(t, tasks.size()), tasks[t].name() + ", " + what);
+            progress.update(fraction_of(t, tasks.size()), tasks[t].name() + ", " + what);
         };
         begin("reference");
-        RenderingTask task(contenders, tasks[t]);
+        RenderingTask task(baselines, tasks[t]);
         std::vector<RenderingSummary> summaries;
         const auto add = [&](const std::vector<RenderingRow>& runs) {
             table.rows.insert(table.rows.end(), runs.begin(), runs.end());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "apps/bench/field/contenders.h"
+#include "apps/bench/field/baselines.h"
 #include "apps/bench/output.h"
 #include "renderer/core/progress.h"
 #include "renderer/core/settings/json_fwd.h"
@@ -70,7 +70,7 @@ struct RenderingTable {
 ///
 /// points    along either side of the wall, a multiple of 4
 /// quick     the letter to order 3 alone
-RenderingTable measure_renderings(Contenders& contenders,
+RenderingTable measure_renderings(Baselines& baselines,
                                   int points,
                                   bool quick,
                                   const core::Progress& progress);

@@ -20,7 +20,7 @@ namespace apps {
 namespace {
 
 constexpr std::size_t kBlock = 4;
-constexpr double kLeastShare = 0.02;  // of a block's light, for a cell of its own
+constexpr double kLeastFraction = 0.02;  // of a block's light, for a cell of its own
 constexpr int kRuns = 32;
 // Rays that start 0.02 mm off the wall see what is 0.44 m away larger by twice their ratio: what
 // hidden-geometry sampling may lose of all light, known no better than that.
@@ -44,9 +44,9 @@ std::vector<std::string> RenderedScene::overrides() const {
     return {"scan.pattern=single", fmt::format("scan.sensing_points=[{0},{0}]", points), bounces};
 }
 
-RenderingTask::RenderingTask(Contenders& contenders, RenderedScene task)
-    : contenders_(contenders), task_(std::move(task)), scene_(task_.path(), task_.overrides()) {
-    stem_ = contenders_.folder() + "/" + task_.name();
+RenderingTask::RenderingTask(Baselines& baselines, RenderedScene task)
+    : baselines_(baselines), task_(std::move(task)), scene_(task_.path(), task_.overrides()) {
+    stem_ = baselines_.folder() + "/" + task_.name();
     for (std::uint64_t seed = 0; seed < 2; ++seed) {
         renderer::RenderSettings settings = scene_.settings();
         settings.method = renderer::Estimator::Auto;
@@ -69,7 +69,7 @@ RenderingRow RenderingTask::run_own(const std::string& method, double target_err
                                        "--set",
                                        fmt::format("render.target_error={}", target_error)};
     for (const std::string& setting : task_.overrides()) arguments.push_back(setting);
-    const FieldRun run = contenders_.run_own(task_.name() + " " + method, arguments);
+    const FieldRun run = baselines_.run_own(task_.name() + " " + method, arguments);
     RenderingRow row = row_of("nlos", method, target_error, run);
     if (!row.reason.empty()) return row;
     const int samples = run.said.value("samples_per_pair", 0);
@@ -108,7 +108,7 @@ core::Json RenderingTask::agree(const PeerSampling& sampling) {
                    {"reason", run.failure}};
     if (!run.failure.empty()) return row;
     const BinAgreement found =
-        bin_agreement_of(mean_reference(), runs, grid(), kBlock, kLeastShare, kRayOffsetLoss);
+        bin_agreement_of(mean_reference(), runs, grid(), kBlock, kLeastFraction, kRayOffsetLoss);
     row["runs"] = kRuns;
     row["energy_ratio"] = found.energy_ratio;
     row["energy_z"] = found.energy_z;
@@ -155,9 +155,9 @@ RenderingTask::PeerRuns RenderingTask::ask_peer(const PeerSampling& sampling,
     request["outputs"] = outputs;
     PeerRuns result;
     auto& [run, transients] = result;
-    run = contenders_.run_peer(task_.name() + " " + sampling.name,
-                               task_.is_image() ? "mitransient_image" : "mitransient_render",
-                               request);
+    run = baselines_.run_peer(task_.name() + " " + sampling.name,
+                              task_.is_image() ? "mitransient_image" : "mitransient_render",
+                              request);
     if (!run.failure.empty()) return result;
     try {
         for (const std::string& output : outputs) transients.push_back(read_histograms(output));

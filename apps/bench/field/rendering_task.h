@@ -36,7 +36,7 @@ struct PeerSampling {
 /// One or two independent references of a scene, and the tools to run renderers on it.
 class RenderingTask {
  public:
-    RenderingTask(Contenders& contenders, RenderedScene task);
+    RenderingTask(Baselines& baselines, RenderedScene task);
 
     RenderingRow run_own(const std::string& method, double target_error);
     RenderingRow run_peer(const PeerSampling& sampling, int samples);
@@ -61,7 +61,7 @@ class RenderingTask {
     /// Wall points or pixels along x and y.
     std::array<std::size_t, 2> grid() const;
 
-    Contenders& contenders_;
+    Baselines& baselines_;
     RenderedScene task_;
     BenchScene scene_;
     std::string stem_;

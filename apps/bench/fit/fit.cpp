@@ -25,7 +25,7 @@ struct PoseSummary {
     double depth_m = 0.0;
     double spin_deg = 0.0;
     double tilt_deg = 0.0;
-    double over_bound = 0.0;  ///< RMS error over the RMS stated one
+    double over_bound = 0.0;  ///< RMS error over the RMS reported one
     double normalised_square = 0.0;
     double cpu_seconds = 0.0;
     double iterations = 0.0;
@@ -151,13 +151,13 @@ PosesFound search_poses(const PoseSearch& search, int trials) {
 }
 
 void bench_basin(int trials, FitBench& bench) {
-    const auto share = [&](double distance_m, double angle_deg) {
+    const auto fraction = [&](double distance_m, double angle_deg) {
         const PoseSearch from{.distance_m = distance_m, .angle_deg = angle_deg};
         return 100.0 * search_poses(from, trials).found / trials;
     };
-    const double both = share(0.2, 45.0);
-    const double turned = share(0.0, 90.0);
-    const double far = share(0.3, 0.0);
+    const double both = fraction(0.2, 45.0);
+    const double turned = fraction(0.0, 90.0);
+    const double far = fraction(0.3, 0.0);
     bench.rows.push_back({"basin with the schedule: 20 cm + 45 deg / 90 deg / 30 cm [%]",
                           "100 / >= 95 / >= 90",
                           fmt::format("{:.0f} / {:.0f} / {:.0f}", both, turned, far),
@@ -277,7 +277,7 @@ BenchResult measure_fit(const FitBenchSettings& settings, const core::Progress& 
     FitBench bench;
     int done = 0;
     for (const BenchPart& part : bench_parts()) {
-        progress.update(share_of(done++, bench_parts().size()), part.name);
+        progress.update(fraction_of(done++, bench_parts().size()), part.name);
         const bool is_wanted =
             settings.parts.empty() || std::ranges::count(settings.parts, part.name) > 0;
         if (is_wanted) part.run(settings.trials, bench);

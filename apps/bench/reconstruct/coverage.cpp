@@ -39,8 +39,8 @@ Surroundings surroundings(const core::DepthMap& truth, std::size_t ix, std::size
     return any_surface ? Surroundings::Surface : Surroundings::Background;
 }
 
-/// A share of many, counted.
-struct Share {
+/// A fraction of many, counted.
+struct Fraction {
     std::size_t hits = 0;
     std::size_t count = 0;
 
@@ -55,7 +55,7 @@ struct Share {
 
 /// Columns of one method at one signal level.
 struct DepthTally {
-    Share within_68, within_95, inside_68, inside_95, found, wrong, wrong_apart;
+    Fraction within_68, within_95, inside_68, inside_95, found, wrong, wrong_apart;
     std::vector<double> sigmas_m, errors_m;
 
     void add_found(double error_m, double sigma_m, Surroundings around) {
@@ -78,7 +78,7 @@ double median(const std::vector<double>& values) {
 
 /// Columns of one method by tenths of their probability.
 struct ProbabilityTally {
-    std::array<Share, kTenths> surface;
+    std::array<Fraction, kTenths> surface;
     std::array<double, kTenths> sum{};
 
     void add(double probability, bool is_surface) {
@@ -113,7 +113,7 @@ void tally(const nlos::Reconstruction& result,
     }
 }
 
-/// Whether stated deviations of depth hold, at one signal level.
+/// Whether reported deviations of depth hold, at one signal level.
 core::Json row_of(const std::string& method,
                   double peak_counts,
                   int captures,
@@ -122,54 +122,54 @@ core::Json row_of(const std::string& method,
             {"peak_counts", peak_counts},  // expected in the brightest bin
             {"captures", captures},
             {"columns", tally.errors_m.size()},      // of true surfaces that were given a depth
-            {"within_68", tally.within_68.value()},  // share of them within one deviation
+            {"within_68", tally.within_68.value()},  // fraction of them within one deviation
             {"within_95", tally.within_95.value()},  // within 1.96
             {"inside_68", tally.inside_68.value()},  // of columns that only surface surrounds
             {"inside_95", tally.inside_95.value()},
             {"median_sigma_m", median(tally.sigmas_m)},
             {"median_error_m", median(tally.errors_m)},
-            {"found", tally.found.value()},               // share of true columns given a depth
-            {"wrong", tally.wrong.value()},               // share of background columns given one
+            {"found", tally.found.value()},  // fraction of true columns given a depth
+            {"wrong", tally.wrong.value()},  // fraction of background columns given one
             {"wrong_apart", tally.wrong_apart.value()}};  // of those that no true column touches
 }
 
-/// How many of the columns with a stated probability within a tenth are surface, over all signal
+/// How many of the columns with a reported probability within a tenth are surface, over all signal
 /// levels.
 void add_rows(const std::string& method, const ProbabilityTally& tally, core::Json& rows) {
     for (std::size_t tenth = 0; tenth < kTenths; ++tenth) {
-        const Share& surface = tally.surface[tenth];
+        const Fraction& surface = tally.surface[tenth];
         if (surface.count == 0) continue;
         rows.push_back({{"method", method},
                         {"from", static_cast<double>(tenth) / kTenths},
                         {"columns", surface.count},
-                        {"stated", share_of(tally.sum[tenth], surface.count)},  // on average
+                        {"stated", fraction_of(tally.sum[tenth], surface.count)},  // on average
                         {"surface", surface.value()}});
     }
 }
 
-/// What is stated against what is true, with the line where both are equal.
+/// What is reported against what is true, with the line where both are equal.
 nlos::Plot probability_plot(const core::Json& rows) {
-    nlos::Plot plot{"Columns that are surface", "stated probability", "true share", {}};
+    nlos::Plot plot{"Columns that are surface", "reported probability", "true fraction", {}};
     plot.x_scale = nlos::AxisScale::Linear;
     plot.y_scale = nlos::AxisScale::Linear;
     for (const core::Json& row : rows) {
         line_named(row["method"], plot).add(row["stated"], row["surface"]);
     }
-    plot.lines.push_back({"as stated", {0.0, 1.0}, {0.0, 1.0}, nlos::LineStyle::Limit});
+    plot.lines.push_back({"as given", {0.0, 1.0}, {0.0, 1.0}, nlos::LineStyle::Limit});
     return plot;
 }
 
-/// Share of the depths within an interval over the signal, with the share that it states.
-nlos::Plot interval_plot(const core::Json& rows, const char* within, double stated) {
-    nlos::Plot plot{fmt::format("Depths within their intervals of {:g} %", 100.0 * stated),
+/// Fraction of the depths within an interval over the signal, with the fraction that it reports.
+nlos::Plot interval_plot(const core::Json& rows, const char* within, double reported) {
+    nlos::Plot plot{fmt::format("Depths within their intervals of {:g} %", 100.0 * reported),
                     "counts in the brightest bin",
-                    "share of the depths",
+                    "fraction of the depths",
                     {}};
     plot.y_scale = nlos::AxisScale::Linear;
-    nlos::PlotLine limit{"as stated", {}, {}, nlos::LineStyle::Limit};
+    nlos::PlotLine limit{"as given", {}, {}, nlos::LineStyle::Limit};
     for (const core::Json& row : rows) {
         line_named(row["method"], plot).add(row["peak_counts"], row[within]);
-        if (row["method"] == rows.front()["method"]) limit.add(row["peak_counts"], stated);
+        if (row["method"] == rows.front()["method"]) limit.add(row["peak_counts"], reported);
     }
     plot.lines.push_back(limit);
     return plot;
@@ -191,7 +191,7 @@ BenchResult measure_coverage(const CoverageBenchSettings& settings,
     std::vector<DepthTally> depths(settings.methods.size() * num_peaks);
     std::vector<ProbabilityTally> probabilities(settings.methods.size());
     for (int number = 0; number < settings.surfaces; ++number) {
-        progress.update(share_of(number, settings.surfaces), "surfaces");
+        progress.update(fraction_of(number, settings.surfaces), "surfaces");
         const RandomCapture random = make_random_capture(settings.first + number);
         for (std::size_t peak = 0; peak < num_peaks; ++peak) {
             const core::Capture counts =
@@ -226,7 +226,7 @@ BenchResult measure_coverage(const CoverageBenchSettings& settings,
 
 extern const CommandRow kCoverageBench{
     "coverage",
-    "Whether stated deviations of depth and probabilities of surfaces hold",
+    "Whether reported deviations of depth and probabilities of surfaces hold",
     "nlos bench coverage -o out/bench --surfaces 1 --methods lct --peaks 100",
     declare_coverage_bench};
 

@@ -138,7 +138,7 @@ BenchResult measure_long_range(const LongRangeBenchSettings& settings,
         for (const double photons : settings.photons) {
             const core::Capture capture = detected(clean, photons);
             for (const std::string& method : settings.methods) {
-                progress.update(share_of(scores.size(), count), method);
+                progress.update(fraction_of(scores.size(), count), method);
                 scores.push_back(score_of(capture, photons, spot_m, method));
             }
         }

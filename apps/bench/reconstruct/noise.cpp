@@ -143,13 +143,14 @@ BenchResult measure_noise(const NoiseBenchSettings& settings, const core::Progre
         const std::string method(core::enum_name(traits->method));
         NoiseCurve& curve = curves.emplace_back(NoiseCurve{method, {}});
         for (const double peak : kPeaks) {
-            progress.update(share_of(curves.size() - 1, nlos::kMethods.size() + 1), method);
+            progress.update(fraction_of(curves.size() - 1, nlos::kMethods.size() + 1), method);
             curve.scores.push_back(score_at(range, peak, {"method=" + method}, repeats).first);
         }
     }
     core::Json searches = core::Json::array();
     for (const double peak : kPeaks) {
-        progress.update(share_of(nlos::kMethods.size(), nlos::kMethods.size() + 1), "snr of lct");
+        progress.update(fraction_of(nlos::kMethods.size(), nlos::kMethods.size() + 1),
+                        "snr of lct");
         searches.push_back(search_snr(range, peak, repeats));
     }
     const auto plot = [&](const std::string& title, double NoiseScore::*value) {

@@ -64,7 +64,7 @@ struct CoverageBenchSettings {
     std::vector<double> peaks{3.0, 10.0, 20.0, 100.0, 1000.0};
 };
 
-/// Reconstructs random surfaces from counts and holds stated deviations and probabilities against
+/// Reconstructs random surfaces from counts and holds reported deviations and probabilities against
 /// the truth: `depths` has a row per method and signal level, `probabilities` one per method and
 /// tenth.
 BenchResult measure_coverage(const CoverageBenchSettings& settings, const core::Progress& progress);
@@ -79,7 +79,7 @@ struct WeightsBenchSettings {
 };
 
 /// Reconstructs random surfaces with the weight of total variation that the solver takes by itself
-/// and with others: `searches` has a row per signal level and share of wall points.
+/// and with others: `searches` has a row per signal level and fraction of wall points.
 BenchResult measure_weights(const WeightsBenchSettings& settings, const core::Progress& progress);
 
 /// What `nlos bench long_range` is to measure.

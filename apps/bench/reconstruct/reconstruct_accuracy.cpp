@@ -213,7 +213,7 @@ core::Json measure_accuracies(const ReconstructBenchSettings& settings,
     for (std::size_t i = 0; i < cases.size(); ++i) {
         const Exam exam = cases[i].exam();
         for (const Candidate& candidate : cases[i].candidates) {
-            progress.update(share_of(i, cases.size()), exam.name);
+            progress.update(fraction_of(i, cases.size()), exam.name);
             accuracies.push_back(measure_accuracy(exam, candidate));
         }
     }

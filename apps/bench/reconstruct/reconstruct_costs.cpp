@@ -83,7 +83,7 @@ core::Json measure_cost(const CostCase& job, int repeats) {
     std::vector<double> limits;
     double spent = 0.0;
     double peak_bytes = 0.0;
-    double stated_bytes = 0.0;
+    double estimated_bytes = 0.0;
     double gpairs = 0.0;
     for (int i = 0; i < repeats && spent < kLongEnough_s; ++i) {
         const ReconstructRun one = run_reconstruction(capture, job.overrides);
@@ -91,7 +91,7 @@ core::Json measure_cost(const CostCase& job, int repeats) {
         all_seconds.push_back(one.result.seconds);
         spent += one.result.seconds;
         peak_bytes = std::max(peak_bytes, one.peak_bytes);
-        stated_bytes = one.result.stated_bytes;
+        estimated_bytes = one.result.estimated_bytes;
         limits.push_back(reconstruction_limit_seconds(capture, one.result));
         if (job.counts_pairs) {
             gpairs = 1e-9 * static_cast<double>(capture.scan.num_pairs()) *
@@ -107,9 +107,9 @@ core::Json measure_cost(const CostCase& job, int repeats) {
                    {"seconds", core::median(all_seconds)},
                    {"limit_seconds", limit_seconds},  // of FFTs or multiply-adds; 0: not measured
                    {"ratio", ratio},
-                   {"gpairs_per_s", gpairs_per_s},  // pairs times voxels; 0: not counted
-                   {"peak_bytes", peak_bytes},      // resident, of the whole process
-                   {"stated_bytes", stated_bytes},  // what reconstruct() announced
+                   {"gpairs_per_s", gpairs_per_s},     // pairs times voxels; 0: not counted
+                   {"peak_bytes", peak_bytes},         // resident, of the whole process
+                   {"stated_bytes", estimated_bytes},  // what reconstruct() announced
                    {"target", ""},
                    {"met", ""}};
     const auto& [max_ratio, max_bytes, min_gpairs] = job.target;
@@ -126,7 +126,7 @@ core::Json measure_costs(const ReconstructBenchSettings& settings, const core::P
     const std::vector<CostCase> cases = cost_cases(settings.scenes_folder);
     core::Json costs = core::Json::array();
     for (const CostCase& job : cases) {
-        progress.update(share_of(costs.size(), cases.size()), job.name);
+        progress.update(fraction_of(costs.size(), cases.size()), job.name);
         costs.push_back(measure_cost(job, settings.repeats));
     }
     return costs;

@@ -76,7 +76,7 @@ std::vector<ReconstructScaling> grow_captures(const ReconstructBenchSettings& se
         if (points > settings.largest) break;
         const core::Capture capture = letter_capture(settings.scenes_folder, kSizes[size]);
         for (std::size_t i = 0; i < curves.size(); ++i) {
-            progress.update(share_of(size, kSizes.size()), names[i]);
+            progress.update(fraction_of(size, kSizes.size()), names[i]);
             Overrides overrides{std::string("method=") + methods[i], "merge_bins=1"};
             if (i >= 3) {
                 overrides.push_back(kSlices);
@@ -105,7 +105,7 @@ std::vector<ReconstructScaling> grow_volumes(const ReconstructBenchSettings& set
         curve.method = method;
         curve.of = "voxels";
         for (const int slices : {16, 32, 64, 128, 256}) {
-            progress.update(share_of(curves.size() - 1, 2), method);
+            progress.update(fraction_of(curves.size() - 1, 2), method);
             curve.points.push_back(
                 measure_point(capture,
                               {"method=" + method,

@@ -18,7 +18,7 @@ using core::Vec3;
 
 constexpr int kPointsPerAxis = 32;
 constexpr core::TimeAxis kAxis{0.0, 0.008, 256};
-constexpr double kBackgroundShare = 0.02;  // of the brightest bin
+constexpr double kBackgroundFraction = 0.02;  // of the brightest bin
 
 renderer::SceneGeometry random_surface(int number) {
     core::Rng rng(0, static_cast<std::uint64_t>(number), 0);
@@ -63,7 +63,7 @@ RandomCapture make_random_capture(int number) {
 core::Capture random_counts(const core::Capture& clean, double peak_counts, int seed) {
     nlos::DetectorSettings settings;
     settings.photons = photons_for_peak(clean, peak_counts);
-    settings.ambient = kBackgroundShare * peak_counts;
+    settings.ambient = kBackgroundFraction * peak_counts;
     settings.seed = static_cast<std::uint64_t>(seed);
     return nlos::detect(clean, settings);
 }

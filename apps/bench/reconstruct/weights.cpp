@@ -14,7 +14,7 @@
 namespace apps {
 namespace {
 
-/// The same capture with this share of its points, drawn one by one.
+/// The same capture with this fraction of its points, drawn one by one.
 core::Capture thinned(core::Capture capture, double observed, int seed) {
     core::Rng rng(1, static_cast<std::uint64_t>(seed), 0);
     std::vector<core::BinRange> ranges(capture.transient.num_pairs());
@@ -61,12 +61,12 @@ struct WeightTally {
             default_error_m += default_errors[i];
         }
     }
-    double found_share() const {
+    double found_fraction() const {
         return columns > 0 ? static_cast<double>(found) / static_cast<double>(columns) : 0.0;
     }
 };
 
-/// One signal level and share of points.
+/// One signal level and fraction of points.
 struct Search {
     double peak_counts = 0.0;
     double observed = 1.0;
@@ -101,14 +101,15 @@ core::Json row_of(const Search& search, const WeightsBenchSettings& settings) {
         if (tally.both == 0 || tally.default_error_m < error_over_best * tally.error_m) continue;
         error_over_best = tally.default_error_m / tally.error_m;
         best_weight = settings.weights[w];
-        best_found = tally.found_share();
+        best_found = tally.found_fraction();
     }
     return {{"peak_counts", search.peak_counts},  // expected in the brightest bin; 0: radiance
-            {"observed", search.observed},        // share of the wall points
+            {"observed", search.observed},        // fraction of the wall points
             {"captures", settings.surfaces},
-            {"found", search.own.found_share()},  // share of true columns given a depth by default
+            {"found",
+             search.own.found_fraction()},  // fraction of true columns given a depth by default
             {"depth_mae_m",
-             search.own.found > 0 ? share_of(search.own.error_m, search.own.found) : 0.0},
+             search.own.found > 0 ? fraction_of(search.own.error_m, search.own.found) : 0.0},
             {"best_weight", best_weight},  // of those tried, the one of least error
             {"best_found", best_found},    // as `found`, with it
             // The default's mean error over the best weight's, over the columns that both found.
@@ -121,7 +122,7 @@ void declare_weights_bench(Command& command) {
     add_setting(command, "--first", settings.first, "Number of the first of them", {0, 1000000});
     add_setting(
         command, "--peaks", settings.peaks, "Counts in the brightest bin; 0: without noise");
-    add_setting(command, "--observed", settings.observed, "Shares of the wall points");
+    add_setting(command, "--observed", settings.observed, "Fractions of the wall points");
 }
 
 }  // namespace
@@ -137,7 +138,7 @@ BenchResult measure_weights(const WeightsBenchSettings& settings, const core::Pr
     for (int number = 0; number < settings.surfaces; ++number) {
         const RandomCapture random = make_random_capture(settings.first + number);
         for (Search& search : searches) {
-            progress.update(share_of(number, settings.surfaces), "surfaces");
+            progress.update(fraction_of(number, settings.surfaces), "surfaces");
             add_surface(random, number, settings.weights, search);
         }
     }

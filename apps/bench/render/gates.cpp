@@ -111,7 +111,7 @@ double middle_of_signal_m(const BenchScene& scene, renderer::Exclusion exclude) 
     settings.method = Estimator::Ellipsoidal;
     settings.exclude = exclude;
     settings.samples = kPilotSamples;
-    return scene.axis().bin_center_m(bin_of_share(scene.render(settings), 0.5));
+    return scene.axis().bin_center_m(bin_of_fraction(scene.render(settings), 0.5));
 }
 
 core::TimeAxis gate_axis(const BenchScene& scene, double center_m, double gate_mm) {
@@ -125,8 +125,8 @@ double crossing_mm(const std::vector<GateBench>& gates) {
     for (const GateBench& gate : gates) {
         if (gate.gate_mm == 0.0 || gate.method != "ellipsoidal") continue;
         if (wider != nullptr && (wider->gain > 1.0) != (gate.gain > 1.0)) {
-            const double share = std::log(wider->gain) / std::log(wider->gain / gate.gain);
-            return wider->gate_mm * std::pow(gate.gate_mm / wider->gate_mm, share);
+            const double fraction = std::log(wider->gain) / std::log(wider->gain / gate.gain);
+            return wider->gate_mm * std::pow(gate.gate_mm / wider->gate_mm, fraction);
         }
         wider = &gate;
     }

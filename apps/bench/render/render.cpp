@@ -104,7 +104,7 @@ BenchCurve measure_curve(const BenchScene& bench,
     BenchCurve curve;
     curve.method = method;
     for (std::size_t i = 0; i < efforts.size(); ++i) {
-        progress.update(share_of(i, efforts.size()), method);
+        progress.update(fraction_of(i, efforts.size()), method);
         curve.points.push_back(measure(bench, efforts[i].settings, reference, repeats));
         curve.points.back().effort = efforts[i].name;
         if (!renderer::traits_of(efforts[i].settings.method).is_deterministic) {

@@ -26,9 +26,9 @@ const std::vector<std::string> kAgreementScenes{"scenes/letter/scene.json",
                                                 "scenes/animal/scene.json",
                                                 "scenes/curved/scene.json"};
 
-double share_where(const core::Json& rows, const char* key) {
+double fraction_where(const core::Json& rows, const char* key) {
     const auto holds = [&](const core::Json& row) { return row[key] == true; };
-    return share_of(std::count_if(rows.begin(), rows.end(), holds), rows.size());
+    return fraction_of(std::count_if(rows.begin(), rows.end(), holds), rows.size());
 }
 
 // What was asked of the renderers, and what this run's figures say of it.
@@ -58,15 +58,15 @@ std::vector<Target> render_targets(const core::Json& figures) {
             ours <= limit);
     }
     if (const core::Json& errors = figures["target_errors"]; !errors.empty()) {
-        const auto share = [&](const char* key) { return share_where(errors, key); };
+        const auto fraction = [&](const char* key) { return fraction_where(errors, key); };
         add("random scenes below their target error",
             ">= 0.95 of them",
-            share("met"),
-            share("met") >= 0.95);
+            fraction("met"),
+            fraction("met") >= 0.95);
         add("random scenes five times below, a coarser cut left",
             "<= 0.05 of them",
-            share("is_far_below"),
-            share("is_far_below") <= 0.05);
+            fraction("is_far_below"),
+            fraction("is_far_below") <= 0.05);
     }
     for (const core::Json& agreement : figures["agreement"]) {
         const double p_value = agreement["p_value"];

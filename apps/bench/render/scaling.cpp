@@ -128,7 +128,7 @@ std::vector<RenderScaling> bench_render_scaling(const core::Progress& progress) 
     const std::vector<Series> all = all_series();
     for (const Series& series : all) {
         for (const Estimator method : series.methods) {
-            progress.update(share_of(&series - all.data(), all.size()),
+            progress.update(fraction_of(&series - all.data(), all.size()),
                             "scaling with " + series.of);
             result.push_back(measure_series(series, method));
         }

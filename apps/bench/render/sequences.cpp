@@ -44,8 +44,8 @@ struct SequenceSetup {
 
 using SequenceFrames = std::vector<core::Transient>;
 
-// Frames before this share of a sequence are left out of the means: reuse has to settle.
-constexpr double kSequenceSettlingShare = 1.0 / 6.0;
+// Frames before this fraction of a sequence are left out of the means: reuse has to settle.
+constexpr double kSequenceSettlingFraction = 1.0 / 6.0;
 
 bool is_integrable(const SequenceSetup& setup) {
     return setup.scan.has_wall() && setup.description.render.max_bounces == 3;
@@ -119,7 +119,7 @@ core::Json run_method(const SequenceCase& sequence,
         errors.add(result.capture.sequence->frames, references[0], references[1]);
     }
     const auto first_settled =
-        static_cast<std::size_t>(std::ceil(kSequenceSettlingShare * sequence.num_frames));
+        static_cast<std::size_t>(std::ceil(kSequenceSettlingFraction * sequence.num_frames));
     const ErrorSums settled = errors.settled(first_settled);
     const double all_frames = static_cast<double>(num_seeds) * sequence.num_frames;
     return {{"sequence", sequence.name},  // gate and measurement
@@ -130,7 +130,7 @@ core::Json run_method(const SequenceCase& sequence,
             {"sum_ratio", settled.sum / settled.reference_sum},
             {"gain", nullptr},
             {"trimmed_gain", nullptr},
-            {"accepted_share", counts.shifts.accepted_share()},  // of shifts; 0: none was tried
+            {"accepted_share", counts.shifts.accepted_fraction()},  // of shifts; 0: none was tried
             {"shifts_per_frame", static_cast<double>(counts.shifts.tried()) / all_frames},
             {"merges_per_frame", static_cast<double>(counts.num_merges) / all_frames},
             {"rel_mse_of_frames", errors.rel_mse_of_frames()}};
@@ -203,7 +203,7 @@ void bench_sequence(const SequenceCase& sequence,
         return row[error].get<double>() * row["seconds_per_frame"].get<double>();
     };
     for (const SequenceMethod& method : methods) {
-        progress.update(share_of(rows.size() - first, methods.size()),
+        progress.update(fraction_of(rows.size() - first, methods.size()),
                         sequence.name + ", " + method.name);
         core::Json& row = rows.emplace_back(run_method(sequence, method, num_seeds, references));
         row["gain"] = cost(rows[first], "rel_mse") / cost(row, "rel_mse");

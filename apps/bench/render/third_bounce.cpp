@@ -154,7 +154,7 @@ core::Json compare_bins(const core::Capture& integrated, const core::Capture& pa
     }
     const double tail = std::erfc(largest_z / std::sqrt(2.0));
     return {{"num_bins", num_bins},  // that path knows to 10 %, and their neighbours, too
-            {"within_95", num_bins > 0 ? share_of(num_within, num_bins) : 0.0},
+            {"within_95", num_bins > 0 ? fraction_of(num_within, num_bins) : 0.0},
             {"largest_z", largest_z},  // in standard deviations; its chance among so many bins:
             {"p_value", -std::expm1(static_cast<double>(num_bins) * std::log1p(-tail))},
             {"energy_ratio", sum_integrated / sum_paths},
@@ -168,9 +168,9 @@ core::WallScan few_points(const core::WallScan& all, core::ScanPattern pattern) 
     const auto spread = [&](std::size_t count, double phase) {
         core::WallPoints points;
         for (std::size_t i = 0; i < count; ++i) {
-            const double share = std::fmod((static_cast<double>(i) + phase) * kGolden, 1.0);
+            const double fraction = std::fmod((static_cast<double>(i) + phase) * kGolden, 1.0);
             const auto index =
-                static_cast<std::size_t>(share * static_cast<double>(all.sensing.size()));
+                static_cast<std::size_t>(fraction * static_cast<double>(all.sensing.size()));
             points.positions.push_back(all.sensing.positions[index]);
             points.normals.push_back(all.sensing.normals[index]);
         }
@@ -257,7 +257,7 @@ core::Json cost_of(const std::string& measurement,
 core::Json bench_target_errors(int num_scenes, const core::Progress& progress) {
     core::Json rows = core::Json::array();
     for (int scene = 0; scene < num_scenes; ++scene) {
-        progress.update(share_of(scene, num_scenes), "target errors");
+        progress.update(fraction_of(scene, num_scenes), "target errors");
         try_targets(scene, rows);
     }
     return rows;
@@ -267,7 +267,7 @@ core::Json bench_agreement(const std::vector<std::string>& scenes, const core::P
     core::Json rows = core::Json::array();
     for (const std::string& scene : scenes) {
         for (const core::ScanPattern pattern : kPatterns) {
-            progress.update(share_of(rows.size(), kPatterns.size() * scenes.size()),
+            progress.update(fraction_of(rows.size(), kPatterns.size() * scenes.size()),
                             "agreement with path");
             rows.push_back(compare_with_path(scene, pattern));
         }
@@ -283,8 +283,8 @@ core::Json bench_third_bounce_costs(const std::string& scene_path, int repeats) 
     const core::Capture capture = bench.render(settings);
     core::Json costs = core::Json::array();
     costs.push_back(cost_of("histogram", bench, bench.axis(), repeats));
-    for (const double share : {0.1, 0.5, 0.9}) {
-        const double opl = bench.axis().bin_begin_m(bin_of_share(capture, share));
+    for (const double fraction : {0.1, 0.5, 0.9}) {
+        const double opl = bench.axis().bin_begin_m(bin_of_fraction(capture, fraction));
         costs.push_back(cost_of(fmt::format("gate of {:g} mm at {:.2f} m", 1e3 * kGate_m, opl),
                                 bench,
                                 {opl, kGate_m, 1},
@@ -297,7 +297,7 @@ core::Json bench_third_bounce_costs(const std::string& scene_path, int repeats) 
     costs.push_back(cost_of("16 x 16 by 16 x 16 pairs", exhaustive, exhaustive.axis(), repeats));
     for (core::Json& cost : costs) {
         cost["share"] =
-            share_of(cost["cpu_seconds"].get<double>(), costs[0]["cpu_seconds"].get<double>());
+            fraction_of(cost["cpu_seconds"].get<double>(), costs[0]["cpu_seconds"].get<double>());
     }
     return costs;
 }

@@ -21,8 +21,8 @@ function wallLayout(animation) {
   const [w, h] = animation.size;
   viewer.require(viewer.isRange(animation.x_m) && viewer.isRange(animation.y_m), 'The capture does not say where it lies.');
   const indexAt = ([low, high], count, value) => clampIndex(Math.floor(((value - low) / (high - low)) * count), count);
-  const place = ([low, high], count, index) => low + ((index + 0.5) / count) * (high - low);
-  const centre = (cell) => [place(animation.x_m, w, Math.floor(cell / h)), place(animation.y_m, h, cell % h)];
+  const centreOf = ([low, high], count, index) => low + ((index + 0.5) / count) * (high - low);
+  const centre = (cell) => [centreOf(animation.x_m, w, Math.floor(cell / h)), centreOf(animation.y_m, h, cell % h)];
   return {
     cells: w * h,
     x: viewer.linearAxis(animation.x_m, 'x (m)', true),
@@ -35,7 +35,7 @@ function wallLayout(animation) {
     centre,
     neighbour: (cell, [right, up]) =>
       clampIndex(Math.floor(cell / h) - right, w) * h + clampIndex((cell % h) + up, h),
-    describe: (cell) => 'Point at ' + viewer.placeText(...centre(cell)),
+    describe: (cell) => 'Point at ' + viewer.positionText(...centre(cell)),
   };
 }
 
@@ -99,7 +99,7 @@ function listLayout(animation, positions) {
       const next = nearest(x, y, (other) => along(other) > 1e-9 && aside(other) <= along(other));
       return next < 0 ? cell : next;
     },
-    describe: (cell) => `Point ${cell} at ` + viewer.placeText(...at(cell)),
+    describe: (cell) => `Point ${cell} at ` + viewer.positionText(...at(cell)),
   };
 }
 

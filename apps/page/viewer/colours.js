@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Colour maps as small tables, scales from values to shares of a colour map, and pictures of both.
+// Colour maps as small tables, scales from values to fractions of a colour map, and pictures of both.
 
 const tables = {};
 
@@ -22,7 +22,7 @@ viewer.colourTable = function (name) {
 
 viewer.resultColour = (index) => viewer.colours.series[index % viewer.colours.series.length];
 
-/** The range that a colour map covers: a diverging one is centred on zero, shares are 0 to 1. */
+/** The range that a colour map covers: a diverging one is centred on zero, fractions are 0 to 1. */
 viewer.colourRange = function (colours, range) {
   if (colours === 'share') return [0, 1];
   let [low, high] = viewer.isRange(range) ? range : [0, 1];
@@ -63,7 +63,7 @@ function logTicks(low, high) {
   return ticks;
 }
 
-const clampUnit = (share) => Math.min(1, Math.max(0, share));
+const clampUnit = (fraction) => Math.min(1, Math.max(0, fraction));
 
 /** A scale of one of the kinds `linear`, `gamma` (square root) and `log`: values to 0..1. */
 viewer.makeScale = function (kind, low, high) {
@@ -74,7 +74,7 @@ viewer.makeScale = function (kind, low, high) {
     return {
       kind, low, high,
       toUnit: (value) => (value > 0 ? clampUnit(Math.log(value / low) / span) : 0),
-      fromUnit: (share) => low * Math.exp(share * span),
+      fromUnit: (fraction) => low * Math.exp(fraction * span),
       ticks: () => logTicks(low, high),
     };
   }
@@ -82,7 +82,7 @@ viewer.makeScale = function (kind, low, high) {
   return {
     kind, low, high,
     toUnit: (value) => Math.pow(clampUnit((value - low) / (high - low)), power),
-    fromUnit: (share) => low + (high - low) * Math.pow(share, 1 / power),
+    fromUnit: (fraction) => low + (high - low) * Math.pow(fraction, 1 / power),
     ticks: (count) => viewer.roundTicks(low, high, count),
   };
 };

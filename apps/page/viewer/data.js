@@ -61,8 +61,8 @@ function valuesOfCodes(description, levels) {
   const { coding, low, high } = description;
   const values = new Float64Array(levels);
   for (let code = 1; code < levels; ++code) {
-    const share = (code - 1) / (levels - 2);
-    values[code] = coding === 'log' ? high * Math.pow(low / high, 1 - share) : low + (high - low) * share;
+    const fraction = (code - 1) / (levels - 2);
+    values[code] = coding === 'log' ? high * Math.pow(low / high, 1 - fraction) : low + (high - low) * fraction;
   }
   values[0] = coding === 'log' ? 0 : NaN;
   if (coding === 'log' && !(low > 0 && high >= low)) values.fill(0);

@@ -132,7 +132,7 @@ viewer.splitBody = function (view, picture, panel, callback) {
 // ---- The page's colours, for canvases. Print is always dark on white. ----
 
 const kPrint = {
-  ink: '#000000', soft: '#444444', line: '#cccccc', card: '#ffffff', accent: '#124a94', error: '#a3271f', missing: '#d9dde4',
+  ink: '#000000', soft: '#444444', line: '#cccccc', panel: '#ffffff', accent: '#124a94', error: '#a3271f', missing: '#d9dde4',
 };
 const themeListeners = [];
 let isPrinting = false;

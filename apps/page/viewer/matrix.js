@@ -16,7 +16,7 @@ viewer.scaleOfMap = (map) => viewer.makeScale('linear', ...viewer.colourRange(ma
 viewer.mapValueText = (map, value) =>
   viewer.withUnit(viewer.formatNumber(value, kWords[map.unit] || 3), map.unit);
 
-viewer.placeText = (x, y) => `x ${viewer.formatFixed(x)} m, y ${viewer.formatFixed(y)} m`;
+viewer.positionText = (x, y) => `x ${viewer.formatFixed(x)} m, y ${viewer.formatFixed(y)} m`;
 
 function makeCell(grid, row, column, map) {
   const { result } = column;
@@ -76,7 +76,7 @@ function describeMark(grid, row) {
   const values = row.cells
     .filter((cell) => cell && cell.loaded)
     .map((cell) => `${cell.column.result.name} ${viewer.mapValueText(cell.map, cell.loaded.valueAt(x, y))}`);
-  return `At ${viewer.placeText(x, y)}. ${row.map.name}: ${values.join('; ')}.`;
+  return `At ${viewer.positionText(x, y)}. ${row.map.name}: ${values.join('; ')}.`;
 }
 
 function makeHeading(results) {

@@ -180,7 +180,7 @@ class Pair {
       const result = this.results[i === 0 ? this.state.left : this.state.right];
       return `${result.name} ${viewer.mapValueText(side.map, side.valueAt(x, y))}`;
     });
-    this.readout.textContent = `At ${viewer.placeText(x, y)}. ${this.state.name}: ${left}; ${right}.`;
+    this.readout.textContent = `At ${viewer.positionText(x, y)}. ${this.state.name}: ${left}; ${right}.`;
   }
 }
 

@@ -43,8 +43,8 @@ viewer.createPlot = function (options) {
   return plot;
 };
 
-function directed(axis, share) {
-  return axis.reversed ? 1 - share : share;
+function directed(axis, fraction) {
+  return axis.reversed ? 1 - fraction : fraction;
 }
 
 function resize(plot, width, height) {
@@ -153,16 +153,16 @@ function listenToPointer(plot, onPoint) {
     const box = canvas.getBoundingClientRect();
     const zoom = box.width / plot.width;  // below one where the style sheet shrinks the canvas
     const { left, top, width, height } = plot.area;
-    const shareX = ((event.clientX - box.left) / zoom - left) / width;
-    const shareY = 1 - ((event.clientY - box.top) / zoom - top) / height;
-    const inside = shareX >= 0 && shareX <= 1 && shareY >= 0 && shareY <= 1;
+    const fractionX = ((event.clientX - box.left) / zoom - left) / width;
+    const fractionY = 1 - ((event.clientY - box.top) / zoom - top) / height;
+    const inside = fractionX >= 0 && fractionX <= 1 && fractionY >= 0 && fractionY <= 1;
     if (!inside && what !== 'drag') {
       onPoint('leave');
       return false;
     }
-    const clamp = (share) => Math.min(1, Math.max(0, share));
-    const x = plot.x.scale.fromUnit(directed(plot.x, clamp(shareX)));
-    const y = plot.y.scale.fromUnit(directed(plot.y, clamp(shareY)));
+    const clamp = (fraction) => Math.min(1, Math.max(0, fraction));
+    const x = plot.x.scale.fromUnit(directed(plot.x, clamp(fractionX)));
+    const y = plot.y.scale.fromUnit(directed(plot.y, clamp(fractionY)));
     onPoint(what, x, y);
     return true;
   };

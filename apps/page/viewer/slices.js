@@ -59,11 +59,11 @@ class Slices {
     });
     this.sliders = kAxes.map((axis, i) =>
       viewer.slider(kAxisTitles[i].replace(' (m)', ''), 'slider-' + axis, { min: 0, max: 0 }, 0,
-        (voxel) => this.placeWords(i, voxel),
+        (voxel) => this.positionWords(i, voxel),
         (voxel) => this.moveTo(this.state.voxel.map((old, k) => (k === i ? voxel : old)))),
     );
-    const place = viewer.group('Where it is cut', ...this.sliders, this.peak);
-    const panel = viewer.element('div', { class: 'view-panel' }, this.choice, place, this.bar.element, this.readout, this.note);
+    const cuts = viewer.group('Where it is cut', ...this.sliders, this.peak);
+    const panel = viewer.element('div', { class: 'view-panel' }, this.choice, cuts, this.bar.element, this.readout, this.note);
     viewer.splitBody(this.view, this.grid, panel, (width) => {
       this.width = width;
       this.layOut();
@@ -131,7 +131,7 @@ class Slices {
     return Math.floor(((position - low) / (high - low)) * this.volume.size[axis]);
   }
 
-  placeWords(axis, voxel) {
+  positionWords(axis, voxel) {
     return this.volume ? viewer.formatFixed(this.centre(axis, voxel)) + ' m' : '';
   }
 
@@ -146,7 +146,7 @@ class Slices {
     this.describe(this.state.voxel);
     this.plots.forEach((plot, i) => {
       const { cut, name } = kViews[i];
-      plot.setLabel(`${name} at ${kAxes[cut]} ${this.placeWords(cut, this.state.voxel[cut])}`);
+      plot.setLabel(`${name} at ${kAxes[cut]} ${this.positionWords(cut, this.state.voxel[cut])}`);
       plot.draw();
     });
   }
@@ -172,7 +172,7 @@ class Slices {
   }
 
   describe(voxel) {
-    const [x, y, z] = voxel.map((index, axis) => this.placeWords(axis, index));
+    const [x, y, z] = voxel.map((index, axis) => this.positionWords(axis, index));
     const { size, quantity } = this.volume;
     const value = quantity.at((voxel[0] * size[1] + voxel[1]) * size[2] + voxel[2]);
     this.readout.textContent = `Voxel at x ${x}, y ${y}, depth ${z}: value ${viewer.formatNumber(value)}.`;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The 3-D view: relay wall, hidden truth, reconstructed points and volumes in one scene.
 
-const kHeights = { least: 320, most: 640, share: 0.7 };  // of the picture, in pixels and of its width
+const kHeights = { least: 320, most: 640, fraction: 0.7 };  // of the picture, in pixels and of its width
 const kDots = { sensing: 2.2, lit: 4 };  // pixels
 const kByResult = 'by result';
 const kModes = [['none', 'Nothing'], ['maximum', 'Maximum projection'], ['surface', 'Surface']];
@@ -109,7 +109,7 @@ class Space {
         this.describe();
         this.stage.invalidate(true);
       }),
-      viewer.element('p', { class: 'view-hint' }, 'The surface, or the faintest light shown, as a share of the largest value.'),
+      viewer.element('p', { class: 'view-hint' }, 'The surface, or the faintest light shown, as a fraction of the largest value.'),
     );
   }
 
@@ -139,7 +139,7 @@ class Space {
     const picture = viewer.element('div', { class: 'space-picture' }, canvas, this.stage.printCopy, this.views, bars);
     if (this.fields().length > 0) picture.append(this.readout);
     viewer.splitBody(this.view, picture, this.panel, (width) => {
-      const height = Math.round(width * kHeights.share);
+      const height = Math.round(width * kHeights.fraction);
       this.stage.resize(width, Math.min(kHeights.most, Math.max(kHeights.least, height)));
     });
     this.view.body.append(viewer.element('p', { class: 'view-hint' }, kHint));
@@ -272,7 +272,7 @@ class Space {
   /** Brings everything in line with the state and the page's colours, and draws. */
   update() {
     const theme = viewer.theme();
-    this.stage.setBackground(theme.card);
+    this.stage.setBackground(theme.panel);
     this.axes.build(this.stage.box, theme);
     if (this.wall) this.wall.setColour(theme.accent);
     if (this.truth) this.truth.setColour(theme.dark);

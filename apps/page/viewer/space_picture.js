@@ -25,8 +25,8 @@ function describePoint(result, cloud, index) {
   const fields = result.points.fields || [];
   const values = fields.map(({ name, unit }) =>
     `${name} ${viewer.withUnit(viewer.formatNumber(cloud.fields.get(name).at(index)), unit)}`);
-  const place = `${viewer.placeText(x, y)}, depth ${viewer.formatFixed(z)} m`;
-  return `${result.name} at ${place}. ${values.join('; ')}${values.length > 0 ? '.' : ''}`;
+  const position = `${viewer.positionText(x, y)}, depth ${viewer.formatFixed(z)} m`;
+  return `${result.name} at ${position}. ${values.join('; ')}${values.length > 0 ? '.' : ''}`;
 }
 
 /** The shown point under the pointer in words, or an empty text; `clouds` by the result's index. */
@@ -53,7 +53,7 @@ viewer.savePicture = function (stage, bars) {
   const context = picture.getContext('2d');
   const theme = viewer.theme();
   context.scale(ratio, ratio);
-  context.fillStyle = theme.card;
+  context.fillStyle = theme.panel;
   context.fillRect(0, 0, stage.width, height);
   context.drawImage(stage.canvas, 0, 0, stage.width, stage.height);
   context.fillStyle = theme.ink;

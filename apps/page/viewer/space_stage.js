@@ -3,7 +3,7 @@
 
 const kDraftTime = 220;      // ms of rest after which a coarse picture is redrawn sharply
 const kDraftRatio = 0.5;     // picture elements of coarse pictures, per CSS pixel
-const kLabelRoom = { x: 110, share: 0.16, y: 46 };  // pixels beside and below the scene
+const kLabelRoom = { x: 110, fraction: 0.16, y: 46 };  // pixels beside and below the scene
 const kFitPasses = 4;        // each centres the picture better
 const kTurn = Math.PI / 36;  // by one press of an arrow key
 
@@ -151,7 +151,7 @@ class Stage {
     const up = new THREE.Vector3().crossVectors(direction, right);
     const tangent = Math.tan((this.camera.fov * Math.PI) / 360);
     const tanUp = tangent * (1 - (2 * kLabelRoom.y) / this.height);
-    const tanRight = tangent * this.camera.aspect * (1 - 2 * Math.min(kLabelRoom.share, kLabelRoom.x / this.width));
+    const tanRight = tangent * this.camera.aspect * (1 - 2 * Math.min(kLabelRoom.fraction, kLabelRoom.x / this.width));
     const target = this.box.getCenter(new THREE.Vector3());
     let distance = 0;
     for (let pass = 0; pass < kFitPasses; ++pass) {

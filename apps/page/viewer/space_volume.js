@@ -24,17 +24,17 @@ const kFragment = `
   uniform mat4 toClip;
   varying vec3 onBox;
 
-  float valueAt(vec3 share) {
-    return max(0.0, (texture(volume, share.zyx).r * 255.0 - 1.0) / 254.0);
+  float valueAt(vec3 fraction) {
+    return max(0.0, (texture(volume, fraction.zyx).r * 255.0 - 1.0) / 254.0);
   }
 
   #ifdef SURFACE
-  vec3 slopeAt(vec3 share) {
+  vec3 slopeAt(vec3 fraction) {
     vec3 e = 1.0 / voxels;
     vec3 rise = vec3(
-        valueAt(share + vec3(e.x, 0.0, 0.0)) - valueAt(share - vec3(e.x, 0.0, 0.0)),
-        valueAt(share + vec3(0.0, e.y, 0.0)) - valueAt(share - vec3(0.0, e.y, 0.0)),
-        valueAt(share + vec3(0.0, 0.0, e.z)) - valueAt(share - vec3(0.0, 0.0, e.z)));
+        valueAt(fraction + vec3(e.x, 0.0, 0.0)) - valueAt(fraction - vec3(e.x, 0.0, 0.0)),
+        valueAt(fraction + vec3(0.0, e.y, 0.0)) - valueAt(fraction - vec3(0.0, e.y, 0.0)),
+        valueAt(fraction + vec3(0.0, 0.0, e.z)) - valueAt(fraction - vec3(0.0, 0.0, e.z)));
     return rise * voxels / (high - low);
   }
 
@@ -148,7 +148,7 @@ viewer.makeVolume = function (stage, loaded, surfaceColour) {
   return {
     object: box,
     bounds: new THREE.Box3(low, high),
-    setThreshold: (share) => { material.uniforms.threshold.value = share; },
+    setThreshold: (fraction) => { material.uniforms.threshold.value = fraction; },
     setMode: (mode) => setMode(material, mode),
     dispose: () => disposeVolume(box),
   };

@@ -13,7 +13,7 @@ arrays have time as first axis: ``capture.H`` is (T, Sx, Sy).
 Long calls release Python's lock, stop on Ctrl-C, and take
 
 * ``progress``: True shows a bar (of tqdm where it is installed), or a function that is called with
-  the share done and a text; when it returns False, the work stops with what it has;
+  the fraction done and a text; when it returns False, the work stops with what it has;
 * ``threads``: how many to use at most; 0 takes all processors.
 
 Settings are keyword arguments with the names that ``--set`` has on the command line, dots being
@@ -313,27 +313,27 @@ def _thread_count(value: Any) -> int:
 
 
 def _show_progress(value: Any, title: str) -> Callable[[float, str], Any] | None:
-    """What is called with the share done: nothing, the caller's own, or a bar."""
+    """What is called with the fraction done: nothing, the caller's own, or a bar."""
     if value is None or value is False:
         return None
     if value is True:
         return _bar(title)
     if callable(value):
         return value
-    raise Error("progress", f"found {type(value).__name__}", "must be True or a function of a share and a text")
+    raise Error("progress", f"found {type(value).__name__}", "must be True or a function of a fraction and a text")
 
 
 def _bar(title: str) -> Callable[[float, str], Any]:
     try:
         from tqdm.auto import tqdm
     except ImportError:
-        return lambda share, text: print(f"{title} {100 * share:3.0f} %  {text}")
+        return lambda fraction, text: print(f"{title} {100 * fraction:3.0f} %  {text}")
     bar = tqdm(total=100, desc=title, unit="%", bar_format="{desc} {percentage:3.0f} %|{bar}| {postfix}")
 
-    def update(share: float, text: str) -> None:
-        bar.update(100 * share - bar.n)
-        bar.set_postfix_str(text, refresh=share >= 1.0)
-        if share >= 1.0:
+    def update(fraction: float, text: str) -> None:
+        bar.update(100 * fraction - bar.n)
+        bar.set_postfix_str(text, refresh=fraction >= 1.0)
+        if fraction >= 1.0:
             bar.close()
 
     return update

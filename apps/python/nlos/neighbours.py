@@ -15,7 +15,7 @@ def from_tal(data: Any) -> Capture:
     """The Capture that a NLOSCaptureData of y-tal (package `y-tal`) holds.
 
     H must be time-resolved: its formats T_Sx_Sy, T_Si, T_Lx_Ly_Sx_Sy or T_Li_Si. Path lengths
-    include the legs to laser and sensor where `t_accounts_first_and_last_bounces` says so.
+    include the segments to laser and sensor where `t_accounts_first_and_last_bounces` says so.
     """
     H = _tal_histograms(data)
     sensing = np.asarray(data.sensor_grid_xyz, float)

@@ -29,7 +29,7 @@ inline const Parameter kHeights{
             if (is_free) state.heights_m.assign(body.vertices.size(), 0.0);
         },
     .move_facet =
-        [](const FacetPlace& at, FacetMotion& motion) {
+        [](const FacetPosition& at, FacetMotion& motion) {
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::uint32_t v = at.facet.vertices[k];
                 std::array<core::Vec3, 3> raised;
@@ -58,7 +58,7 @@ inline const Parameter kHeights{
         return LinearPrior{rows};
     },
     .report_body =
-        [](const BodyPlace& at, std::span<const double> sigma, FittedObject& object) {
+        [](const BodyPosition& at, std::span<const double> sigma, FittedObject& object) {
             object.heights_m = at.state.heights_m;
             if (at.state.heights_m.empty()) return;
             object.heights_sigma_m.assign(sigma.begin(), sigma.end());

@@ -16,7 +16,7 @@ inline const Parameter kRotation{
             return std::span<double>(state.bodies[body].rotation.coeffs().data(), 4);
         },
     .move_facet =
-        [](const FacetPlace& at, FacetMotion& motion) {
+        [](const FacetPosition& at, FacetMotion& motion) {
             for (int a = 0; a < 3; ++a) {
                 std::array<core::Vec3, 3> turned;
                 for (std::size_t i = 0; i < 3; ++i) {
@@ -26,7 +26,7 @@ inline const Parameter kRotation{
             }
         },
     .report_body =
-        [](const BodyPlace& at, std::span<const double> sigma, FittedObject& object) {
+        [](const BodyPosition& at, std::span<const double> sigma, FittedObject& object) {
             object.rotation = (at.state.rotation * Eigen::Quaterniond(at.body.turn)).normalized();
             if (object.rotation.w() < 0.0) object.rotation.coeffs() *= -1.0;
             object.rotation_sigma_deg =

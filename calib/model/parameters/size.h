@@ -15,7 +15,7 @@ inline const Parameter kSize{
     .storage = [](SceneState& state,
                   std::size_t body) { return std::span<double>(&state.bodies[body].log_size, 1); },
     .move_facet =
-        [](const FacetPlace& at, FacetMotion& motion) {
+        [](const FacetPosition& at, FacetMotion& motion) {
             const auto& [a, b, c] = motion.corners;
             motion.add(at.column,
                        {a - at.state.position_m, b - at.state.position_m, c - at.state.position_m});

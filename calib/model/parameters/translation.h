@@ -18,14 +18,14 @@ inline const Parameter kTranslation{
     .start_body =
         [](const ModelBody& body, bool, BodyState& state) { state.position_m = body.origin_m; },
     .move_facet =
-        [](const FacetPlace& at, FacetMotion& motion) {
+        [](const FacetPosition& at, FacetMotion& motion) {
             for (int a = 0; a < 3; ++a) {
                 const core::Vec3 axis = core::Vec3::Unit(a);
                 motion.add(at.column + a, {axis, axis, axis});
             }
         },
     .report_body =
-        [](const BodyPlace& at, std::span<const double> sigma, FittedObject& object) {
+        [](const BodyPosition& at, std::span<const double> sigma, FittedObject& object) {
             object.position_m = at.state.position_m;
             object.position_sigma_m = {sigma[0], sigma[1], sigma[2]};
         }};

@@ -33,14 +33,14 @@ struct ExponentialGaussianResponse {
 /// A measured histogram of delays.
 struct MeasuredResponse {
     std::vector<double> delays_m;  ///< ascending
-    std::vector<double> weights;   ///< share of the light at each delay; not negative, sum 1
+    std::vector<double> weights;   ///< fraction of the light at each delay; not negative, sum 1
 };
 
 using InstrumentResponse =
     std::variant<GaussianResponse, ExponentialGaussianResponse, MeasuredResponse>;
 
 /// The response as users state it, in picoseconds; all 0 and empty: what a capture's provenance
-/// states, if it does. The text `capture` insists on that, and `none` on no response; see
+/// gives, if it does. The text `capture` insists on that, and `none` on no response; see
 /// recorded_detector.h.
 struct ResponseSettings {
     double jitter_fwhm_ps = 0.0;
@@ -64,7 +64,7 @@ void read_value(const Json& json, const std::string& where, ResponseSettings& se
 Json write_value(const ResponseSettings& settings);
 
 /// Whether there is any response.
-inline bool is_stated(const ResponseSettings& settings) {
+inline bool is_given(const ResponseSettings& settings) {
     return settings.of_capture || settings.jitter_fwhm_ps != 0.0 || settings.tail_ps != 0.0 ||
            !settings.curve.empty();
 }

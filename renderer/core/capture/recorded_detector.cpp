@@ -31,8 +31,8 @@ bool matters(const ResponseSettings& response, double bin_width_m) {
     return std::max(std::sqrt(m.variance_m2), std::abs(m.mean_m)) > 0.5 * bin_width_m;
 }
 
-// Photons per pulse of the brightest pair: late ones hide behind as large a share of them.
-double largest_share_of_pulses(const Capture& capture, double pulses) {
+// Photons per pulse of the brightest pair: late ones hide behind as large a fraction of them.
+double largest_fraction_of_pulses(const Capture& capture, double pulses) {
     double largest = 0.0;
     for (std::size_t pair = 0; pair < capture.transient.num_pairs(); ++pair) {
         const auto histogram = capture.transient.histogram(pair);
@@ -57,15 +57,16 @@ std::string describe_spot(double fwhm_m) {
 std::optional<ResponseSettings> recorded_response(const Capture& capture) {
     const Json* detector = detector_of(capture);
     if (detector == nullptr) return std::nullopt;
-    const auto stated = detector->find("response");
-    if (stated == detector->end() || !stated->is_object()) return std::nullopt;
+    const auto described = detector->find("response");
+    if (described == detector->end() || !described->is_object()) return std::nullopt;
     ResponseSettings response;
-    response.jitter_fwhm_ps = std::max(0.0, number_at(*stated, "jitter_fwhm_ps"));
-    response.tail_ps = std::max(0.0, number_at(*stated, "tail_ps"));
-    if (const auto curve = stated->find("curve"); curve != stated->end() && curve->is_string()) {
+    response.jitter_fwhm_ps = std::max(0.0, number_at(*described, "jitter_fwhm_ps"));
+    response.tail_ps = std::max(0.0, number_at(*described, "tail_ps"));
+    if (const auto curve = described->find("curve");
+        curve != described->end() && curve->is_string()) {
         response.curve = curve->get<std::string>();
     }
-    if (!is_stated(response)) return std::nullopt;
+    if (!is_given(response)) return std::nullopt;
     return response;
 }
 
@@ -82,18 +83,18 @@ ResponseSettings resolve_response(const ResponseSettings& asked,
     if (asked.of_capture) {
         require(recorded.has_value(),
                 where,
-                "capture, whose provenance states no response",
+                "capture, whose provenance gives no response",
                 "jitter_fwhm_ps, tail_ps or curve");
         return *recorded;
     }
-    const bool is_open = !is_stated(asked) && !asked.is_none;
+    const bool is_open = !is_given(asked) && !asked.is_none;
     const bool counts = recorded && matters(*recorded, capture.time_axis.bin_width_m);
     return is_open && counts ? *recorded : asked;
 }
 
 ResponseSettings resolve_scene_response(const ResponseSettings& asked, const Capture& capture) {
     const Json::json_pointer jitter("/settings/detector/jitter_fwhm_ps");
-    if (is_stated(asked) || asked.is_none) return asked;
+    if (is_given(asked) || asked.is_none) return asked;
     ResponseSettings response;
     if (capture.scene_info->contains(jitter) && (*capture.scene_info)[jitter].is_number()) {
         response.jitter_fwhm_ps = (*capture.scene_info)[jitter].get<double>();
@@ -105,12 +106,12 @@ std::optional<std::string> detector_warning(const Capture& capture) {
     constexpr double kNotablePileUp = 0.05;
     const Json* detector = detector_of(capture);
     const double pulses = detector != nullptr ? number_at(*detector, "pulses") : 0.0;
-    const double share = pulses > 0.0 ? largest_share_of_pulses(capture, pulses) : 0.0;
-    if (share <= kNotablePileUp) return std::nullopt;
+    const double fraction = pulses > 0.0 ? largest_fraction_of_pulses(capture, pulses) : 0.0;
+    if (fraction <= kNotablePileUp) return std::nullopt;
     return fmt::format(
         "the detector was blind after photons, up to {:.2g} per pulse: early light "
         "hides late light (pile-up), which is not modelled",
-        share);
+        fraction);
 }
 
 }  // namespace core

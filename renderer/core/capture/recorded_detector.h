@@ -12,7 +12,7 @@ namespace core {
 
 /// A response in words: "a response of 100 ps (FWHM)".
 ///
-/// response   stated, see is_stated()
+/// response   given, see is_given()
 std::string describe(const ResponseSettings& response);
 
 /// A spot in words: "a spot of 0.08 m on the wall (FWHM)".
@@ -26,10 +26,10 @@ std::optional<ResponseSettings> recorded_response(const Capture& capture);
 /// lit and saw [m], as layouts of files that hold it state it; nothing when it says none.
 std::optional<double> recorded_spot_m(const Capture& capture);
 
-/// The response asked for; where none is, that of the capture, if it states one of more than half a
+/// The response asked for; where none is, that of the capture, if it gives one of more than half a
 /// bin.
 ///
-/// throws   Error naming `where` when `capture` is asked for, and its provenance states none
+/// throws   Error naming `where` when `capture` is asked for, and its provenance gives none
 ResponseSettings resolve_response(const ResponseSettings& asked,
                                   const Capture& capture,
                                   const std::string& where);
@@ -38,7 +38,7 @@ ResponseSettings resolve_response(const ResponseSettings& asked,
 /// the detector that the light was rendered for, if its scene states one.
 ResponseSettings resolve_scene_response(const ResponseSettings& asked, const Capture& capture);
 
-/// What a capture's provenance states of its detector that no method models: pile-up of more than a
+/// What a capture's provenance gives of its detector that no method models: pile-up of more than a
 /// few photons in a hundred. A sentence, for people.
 std::optional<std::string> detector_warning(const Capture& capture);
 

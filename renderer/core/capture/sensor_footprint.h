@@ -65,9 +65,9 @@ struct PatchPoints {
 
 /// What a zone lights and sees of the wall. Rays that miss the wall leave no point.
 struct ZoneFootprint {
-    /// Weight: share of the laser's power, in proportion to the solid angle. All of the light adds
-    /// up to 1 if it hits the wall: of all zones for flood light, of the zone where each lights its
-    /// own spot.
+    /// Weight: fraction of the laser's power, in proportion to the solid angle. All of the light
+    /// adds up to 1 if it hits the wall: of all zones for flood light, of the zone where each
+    /// lights its own spot.
     PatchPoints lit;
 
     /// Weight: solid angle times the cosine at the lens, relative to the mean zone's. Those of all
@@ -115,7 +115,7 @@ void validate(const SensorSetup& setup, const std::string& where);
 ///     sum over s in seen(zone) of weight(s) seen_irradiance(s) R(s)
 ///
 /// with l in lit(zone) alone where zones light their own spots and in lit of all zones for flood
-/// light; path lengths include the legs `device_m` of both.
+/// light; path lengths include the segments `device_m` of both.
 ///
 /// setup    validated
 /// throws   Error when no zone sees the wall
@@ -124,18 +124,18 @@ SensorFootprints make_footprints(const SensorSetup& setup, std::size_t frame = 0
 /// What it is and where it looks, for people: lines of text.
 std::vector<std::string> describe_sensor(const SensorSetup& setup);
 
-/// A confocal scan of the points that the middles of the zones look at, with the legs of laser and
-/// receiver. Dead zones stand at the wall's centre.
+/// A confocal scan of the points that the middles of the zones look at, with the segments of laser
+/// and receiver. Dead zones stand at the wall's centre.
 ///
 /// throws   as make_footprints()
 SensorScan scan_of_zones(const SensorSetup& setup, std::size_t frame = 0);
 
-/// States in a capture of zones which of them see the wall in no frame: these are not observed.
+/// Marks in a capture of zones which of them see the wall in no frame: these are not observed.
 ///
 /// setup    that the capture is of, with as many poses as the capture has frames or none
 void observe_live_zones(const SensorSetup& setup, Capture& capture);
 
-/// The set-up that a capture is of: its scan's, else what its provenance states (scene_info, key
+/// The set-up that a capture is of: its scan's, else what its provenance gives (scene_info, key
 /// `sensor`), as `nlos render` writes it; nothing when it says nothing of the kind.
 std::optional<SensorSetup> recorded_sensor(const Capture& capture);
 

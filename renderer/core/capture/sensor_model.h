@@ -82,14 +82,14 @@ void for_each_field(SensorDetector& d, Visitor&& visit) {
     visit("aperture_mm2", d.aperture_mm2, above(0, "area of the receiving lens [mm^2]"));
     visit("efficiency",
           d.efficiency,
-          Ranged{"detected share of the photons that reach the lens",
+          Ranged{"detected fraction of the photons that reach the lens",
                  {.low = 0.0, .high = 1.0, .with_high = true}});
     visit("dark_counts_hz", d.dark_counts_hz, at_least(0, "dark counts of a zone [1/s]"));
     visit("dead_time_ns", d.dead_time_ns, at_least(0, "blind time after every detection [ns]"));
     visit("pile_up", d.pile_up, "record no more than the first photon of a laser pulse");
     visit("zone_crosstalk",
           d.zone_crosstalk,
-          Ranged{"share of a zone's light that each of its side neighbours records instead",
+          Ranged{"fraction of a zone's light that each of its side neighbours records instead",
                  {.low = 0.0, .with_low = true, .high = 0.25, .with_high = true}});
     visit("cover_glass_crosstalk",
           d.cover_glass_crosstalk,

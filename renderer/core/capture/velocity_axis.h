@@ -48,7 +48,7 @@ void for_each_field(VelocityAxis& axis, Visitor&& visit) {
     visit("with_time", axis.with_time, "resolve velocity and path length together");
     visit("carrier_hz",
           axis.carrier_hz,
-          above(0, "frequency f0 for which shifts -f0 u/c are stated [Hz]"));
+          above(0, "frequency f0 for which shifts -f0 u/c are given [Hz]"));
 }
 
 /// Throws Error unless the axis has at least one bin of positive width and a positive carrier.

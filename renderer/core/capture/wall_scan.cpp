@@ -52,11 +52,11 @@ std::vector<Vec3> WallScan::path_ends() const {
     return points;
 }
 
-std::array<double, 2> device_leg_range_m(const WallScan& scan) {
-    std::array<double, 2> range{scan.device_legs_m(0), scan.device_legs_m(0)};
+std::array<double, 2> device_segment_range_m(const WallScan& scan) {
+    std::array<double, 2> range{scan.device_segments_m(0), scan.device_segments_m(0)};
     for (std::size_t pair = 1; pair < scan.num_pairs(); ++pair) {
-        const double leg = scan.device_legs_m(pair);
-        range = {std::min(range[0], leg), std::max(range[1], leg)};
+        const double segment = scan.device_segments_m(pair);
+        range = {std::min(range[0], segment), std::max(range[1], segment)};
     }
     return range;
 }

@@ -97,15 +97,15 @@ struct WallScan {
     std::vector<Vec3> path_ends() const;
 
     /// Length of laser -> wall and wall -> detector that the axis includes for a pair [m].
-    double device_legs_m(std::size_t pair) const {
+    double device_segments_m(std::size_t pair) const {
         if (opl_origin == OplOrigin::RelayWall) return 0.0;
         return (illumination_point(pair) - laser_position).norm() +
                (sensing_point(pair) - detector_position).norm();
     }
 };
 
-/// The shortest and the longest device_legs_m() of a scan with at least one pair [m].
-std::array<double, 2> device_leg_range_m(const WallScan& scan);
+/// The shortest and the longest device_segments_m() of a scan with at least one pair [m].
+std::array<double, 2> device_segment_range_m(const WallScan& scan);
 
 /// How far a scan's points extend along two axes: those of their grid, or x and y of the world for
 /// a list. `WallScan::scanned_points` decide.

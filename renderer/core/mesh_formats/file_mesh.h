@@ -9,10 +9,10 @@
 
 namespace core {
 
-/// A material as the file states it.
+/// A material as the file gives it.
 struct FileMaterial {
     std::string name;
-    std::array<double, 3> colour{1.0, 1.0, 1.0};  ///< diffuse, linear; white where none is stated
+    std::array<double, 3> colour{1.0, 1.0, 1.0};  ///< diffuse, linear; white where none is given
     double metallic = 0.0;
     double roughness = 1.0;
     std::vector<std::string> warnings;  ///< what the file says of it that is not modelled
@@ -29,7 +29,7 @@ struct FilePart {
 struct FileMesh {
     TriangleMesh mesh;                       ///< finite vertices; all triangles of all parts
     std::vector<FilePart> parts;             ///< in the order of the file
-    std::vector<FileMaterial> materials{1};  ///< the first is that of parts which state none
+    std::vector<FileMaterial> materials{1};  ///< the first is that of parts which give none
     std::vector<std::string> warnings;       ///< what of the file is not modelled
 };
 

@@ -30,7 +30,7 @@ FileMesh read_mesh_file(const std::string& path) {
         throw Error(path, "is no mesh file", "must be a .obj, .ply or .stl file");
     const MappedFile file(path, std::string("must be a readable ") + format->name + " file");
     file.require_stored();
-    // A line of eight characters may become a triangle and its share of the vertices.
+    // A line of eight characters may become a triangle and its fraction of the vertices.
     constexpr std::size_t kLargestGrowth = 8;
     require_memory(kLargestGrowth * file.bytes().size(), path);
     std::string_view text = file.bytes();

@@ -94,9 +94,9 @@ void read_line(const std::string& path, const WavefrontLine& line, FileMaterial&
 }  // namespace
 
 std::size_t NamedMaterials::find_or_add(std::string_view name) {
-    const auto [place, is_new] = index.try_emplace(std::string(name), list.size());
+    const auto [entry, is_new] = index.try_emplace(std::string(name), list.size());
     if (is_new) list.emplace_back().name = printable(name);
-    return place->second;
+    return entry->second;
 }
 
 void read_mtl(const std::string& path, NamedMaterials& materials) {

@@ -29,7 +29,7 @@ T stored(std::string_view text, std::size_t at) {
     return value;
 }
 
-std::size_t stated_triangles(std::string_view text) {
+std::size_t declared_triangles(std::string_view text) {
     return text.size() < kBodyBegin ? 0 : stored<std::uint32_t>(text, kHeaderBytes);
 }
 
@@ -96,7 +96,7 @@ FileMesh parse_text(const std::string& path, std::string_view text) {
 }
 
 FileMesh parse_stl(const std::string& path, std::string_view text) {
-    const std::size_t count = stated_triangles(text);
+    const std::size_t count = declared_triangles(text);
     const std::size_t expected = kBodyBegin + count * kTriangleBytes;
     if (text.size() == expected) return parse_binary(text);
     std::string_view start = text.substr(0, kBodyBegin);

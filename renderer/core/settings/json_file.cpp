@@ -40,7 +40,7 @@ std::pair<std::size_t, std::size_t> character_at(std::string_view text, std::siz
     return {begin, end};
 }
 
-std::string place_text(std::string_view text, std::size_t byte) {
+std::string position_text(std::string_view text, std::size_t byte) {
     const std::string_view before = text.substr(0, byte);
     const std::size_t line_start = before.rfind('\n') + 1;  // 0 when there is none
     return fmt::format("line {}, column {}",
@@ -178,8 +178,8 @@ std::string hint_at(std::string_view text, std::size_t begin) {
 }
 
 /// Where in a text and why it is no JSON, for people: the line and column in characters, and for
-/// the usual slips (a comma too many, curly quotes, comments, NaN, another encoding) what was found
-/// and how JSON writes it.
+/// the usual mistakes (a comma too many, curly quotes, comments, NaN, another encoding) what was
+/// found and how JSON writes it.
 ///
 /// text       the whole text
 /// position   bytes that the parser had read when it gave up
@@ -201,10 +201,10 @@ std::string json_error_text(std::string_view text,
     const auto [begin, end] = character_at(text, last);
     if (in_string) {
         if (text[last] == '\n') {
-            return place_text(text, last) + ": a line ends before its quote is closed";
+            return position_text(text, last) + ": a line ends before its quote is closed";
         }
         // The library stops within a character of several bytes.
-        return place_text(text, begin) + ": " +
+        return position_text(text, begin) + ": " +
                library_reason(message + std::string(text.substr(last + 1, end - last - 1)));
     }
     // A word that is none of JSON's is over where the library stops: at a bracket or a comma.
@@ -215,7 +215,7 @@ std::string json_error_text(std::string_view text,
     std::string reason = hint_at(text, start);
     if (reason.empty()) reason = expectation(message);
     return fmt::format("{}: found '{}'{}{}",
-                       place_text(text, start),
+                       position_text(text, start),
                        word_at(text, start),
                        reason.empty() ? "" : "; ",
                        reason);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The fits of README and demo: true errors against stated ones.
+// The fits of README and demo: true errors against reported ones.
 #include "apps/commands/fit_job.h"
 #include "apps/commands/render_job.h"
 #include "nlos/detector/detector.h"
@@ -29,7 +29,7 @@ TrueLetter true_letter() {
     throw core::Error("scene.glb", "has no letter", "must have one");
 }
 
-// Stated errors cover true ones, and do not cover everything.
+// Reported errors cover true ones, and do not cover everything.
 void expect_errors_to_hold(const std::string& capture_path,
                            const std::vector<std::string>& overrides) {
     constexpr double kMostSigmas = 4.0;  // of seven parameters in five fits: 0.2 % by chance

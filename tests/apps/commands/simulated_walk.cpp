@@ -86,7 +86,7 @@ class Light {
                     const Vec3& center,
                     std::vector<double>& counts) const {
         const std::vector<Vec3> points = disc_points(center, settings_.target_area_m2);
-        const double share = settings_.target_area_m2 / static_cast<double>(points.size());
+        const double fraction = settings_.target_area_m2 / static_cast<double>(points.size());
         for (const Vec3& x : points) {
             add_returns(f, counts, [&](const Vec3& s) {
                 const Vec3 d = x - s;
@@ -95,7 +95,7 @@ class Light {
                 const double there = settings_.wall_albedo / core::kPi * cosine / (r * r);
                 return std::pair(
                     2.0 * r,
-                    there * settings_.target_albedo * share * settings_.wall_albedo / core::kPi);
+                    there * settings_.target_albedo * fraction * settings_.wall_albedo / core::kPi);
             });
         }
     }
@@ -118,7 +118,7 @@ class Light {
         const std::vector<double> before = counts;
         const int columns = model_.zones[0];
         const int rows = model_.zones[1];
-        const double share = model_.detector.zone_crosstalk;
+        const double fraction = model_.detector.zone_crosstalk;
         const auto zone = [&](int x, int y) {
             return static_cast<std::size_t>(y * columns + x) * bins;
         };
@@ -129,8 +129,8 @@ class Light {
                     const int j = y + dy;
                     if (i < 0 || j < 0 || i >= columns || j >= rows) continue;
                     for (std::size_t b = 0; b < bins; ++b) {
-                        counts[zone(i, j) + b] += share * before[zone(x, y) + b];
-                        counts[zone(x, y) + b] -= share * before[zone(x, y) + b];
+                        counts[zone(i, j) + b] += fraction * before[zone(x, y) + b];
+                        counts[zone(x, y) + b] -= fraction * before[zone(x, y) + b];
                     }
                 }
             }

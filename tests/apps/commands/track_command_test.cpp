@@ -125,7 +125,7 @@ class TrackScene : public TrackCommand {
     static constexpr int kFrames = 8;
 };
 
-TEST_F(TrackScene, FindsADiffuseBodyWithTheErrorItStates) {
+TEST_F(TrackScene, FindsADiffuseBodyWithTheErrorItReports) {
     Json scene = walk_scene();
     scene["geometry"] = file("plate.obj");
     write_file_bytes(file("plate.obj"),

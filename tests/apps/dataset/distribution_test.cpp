@@ -21,8 +21,8 @@ Distribution parse(const char* json) {
 
 constexpr int kDraws = 20000;
 
-/// Share of draws below `value`; its standard deviation is at most 0.5 / sqrt(kDraws) = 0.0035.
-double share_below(const Distribution& distribution, double value) {
+/// Fraction of draws below `value`; its standard deviation is at most 0.5 / sqrt(kDraws) = 0.0035.
+double fraction_below(const Distribution& distribution, double value) {
     int below = 0;
     for (int i = 0; i < kDraws; ++i) {
         core::Rng rng(7, static_cast<std::uint64_t>(i), 3);
@@ -35,16 +35,16 @@ constexpr double kFiveSigma = 5.0 * 0.0036;
 TEST(Distribution, UniformDrawsFollowTheirDistributionFunction) {
     const Distribution uniform = parse(R"({"uniform": [-1, 3]})");
     for (const double value : {-0.5, 0.0, 1.0, 2.5}) {
-        EXPECT_NEAR(share_below(uniform, value), (value + 1.0) / 4.0, kFiveSigma) << value;
+        EXPECT_NEAR(fraction_below(uniform, value), (value + 1.0) / 4.0, kFiveSigma) << value;
     }
-    EXPECT_EQ(share_below(uniform, -1.0), 0.0);
-    EXPECT_EQ(share_below(uniform, 3.0), 1.0);
+    EXPECT_EQ(fraction_below(uniform, -1.0), 0.0);
+    EXPECT_EQ(fraction_below(uniform, 3.0), 1.0);
 }
 
 TEST(Distribution, LogarithmsOfLogUniformDrawsAreUniform) {
     const Distribution distribution = parse(R"({"log_uniform": [0.01, 100]})");
     for (const double exponent : {-1.5, -1.0, 0.0, 1.3}) {
-        EXPECT_NEAR(share_below(distribution, std::pow(10.0, exponent)),
+        EXPECT_NEAR(fraction_below(distribution, std::pow(10.0, exponent)),
                     (exponent + 2.0) / 4.0,
                     kFiveSigma);
     }
@@ -55,18 +55,18 @@ TEST(Distribution, NormalDrawsFollowTheErrorFunctionUpToTheCut) {
     const double inside = std::erf(3.0 / std::sqrt(2.0));
     for (const double sigmas : {-2.0, -1.0, 0.0, 0.5, 2.0}) {
         const double expected = 0.5 + 0.5 * std::erf(sigmas / std::sqrt(2.0)) / inside;
-        EXPECT_NEAR(share_below(normal, 2.0 + 0.5 * sigmas), expected, kFiveSigma);
+        EXPECT_NEAR(fraction_below(normal, 2.0 + 0.5 * sigmas), expected, kFiveSigma);
     }
-    EXPECT_EQ(share_below(normal, 0.5), 0.0);
-    EXPECT_EQ(share_below(normal, 3.5 + 1e-12), 1.0);
+    EXPECT_EQ(fraction_below(normal, 0.5), 0.0);
+    EXPECT_EQ(fraction_below(normal, 3.5 + 1e-12), 1.0);
 }
 
 TEST(Distribution, IntegersAndChoicesAreEquallyLikely) {
     const Distribution integers = parse(R"({"integers": [2, 4]})");
-    EXPECT_EQ(share_below(integers, 2.0), 0.0);
-    EXPECT_NEAR(share_below(integers, 2.5), 1.0 / 3.0, kFiveSigma);
-    EXPECT_NEAR(share_below(integers, 3.5), 2.0 / 3.0, kFiveSigma);
-    EXPECT_EQ(share_below(integers, 4.5), 1.0);
+    EXPECT_EQ(fraction_below(integers, 2.0), 0.0);
+    EXPECT_NEAR(fraction_below(integers, 2.5), 1.0 / 3.0, kFiveSigma);
+    EXPECT_NEAR(fraction_below(integers, 3.5), 2.0 / 3.0, kFiveSigma);
+    EXPECT_EQ(fraction_below(integers, 4.5), 1.0);
     const Distribution choices = parse(R"({"choices": [[16, 16], "auto", null]})");
     std::multiset<std::string> drawn;
     for (int i = 0; i < kDraws; ++i) {

@@ -5,7 +5,7 @@
     run_guide.py [--update] NLOS PAGE.md
 
 Indented lines that begin with one of COMMANDS are run by the shell and must succeed, or end with the
-status that a comment `# exit status N` states. Fenced blocks mean, by the word behind the language:
+status that a comment `# exit status N` gives. Fenced blocks mean, by the word behind the language:
 
     ```json scene.json                 a file that the page makes; matlab files are run, if Octave is there
     ```cpp tests/install/main.cpp      a name with a folder: equal to this file of the checkout
@@ -49,13 +49,13 @@ class Follower:
                             "LC_ALL": "C.UTF-8", "PYTHONDONTWRITEBYTECODE": "1"}
 
     def run(self, command: str) -> None:
-        stated = re.search(r"# exit status (\d+)", command)
+        announced = re.search(r"# exit status (\d+)", command)
         done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               timeout=TIMEOUT_S)
         self.output = done.stdout
         print("$", command, done.stdout, sep="\n", flush=True)
-        if done.returncode != int(stated[1] if stated else 0):
+        if done.returncode != int(announced[1] if announced else 0):
             raise Mismatch(f"status {done.returncode} of: {command}")
 
     def take_block(self, language: str, name: str, body: str) -> None:
@@ -84,11 +84,11 @@ class Follower:
             raise Mismatch(f"{link} is stale, {sizes[0]} pixels for {sizes[1]}: --update")
 
 
-def same(stated: str, printed: str) -> bool:
+def same(announced: str, printed: str) -> bool:
     """A line of the page and one that was printed: numbers agree within TOLERANCE, `...` stands for
     anything, and any space for any other."""
     pattern, wanted = "", []
-    for piece in re.findall(rf"\.\.\.|\s+|{NUMBER}|.", stated.strip()):
+    for piece in re.findall(rf"\.\.\.|\s+|{NUMBER}|.", announced.strip()):
         if re.fullmatch(NUMBER, piece):
             wanted.append(float(piece))
             pattern += f"({NUMBER})"

@@ -143,7 +143,7 @@ TEST_F(Manual, ZshReadsItsCompletion) {
 }
 
 // Units stand in names, and in the help as well.
-TEST_F(Manual, SettingsStateTheUnitsOfTheirNames) {
+TEST_F(Manual, SettingsGiveTheUnitsOfTheirNames) {
     const std::vector<std::array<std::string, 2>> units{{"_m_per_s", "[m/s"},
                                                         {"per_s", "[1/s"},
                                                         {"_carrier_hz", "[Hz"},
@@ -172,7 +172,7 @@ TEST_F(Manual, SettingsStateTheUnitsOfTheirNames) {
     EXPECT_GT(checked, 100U);
 }
 
-TEST_F(Manual, ReferenceStatesDefaultsRangesAndMeanings) {
+TEST_F(Manual, ReferenceGivesDefaultsRangesAndMeanings) {
     const std::string reference = file_bytes(file("manual/reference.md"));
     EXPECT_NE(reference.find("| `render.samples` | `256` | at least 1 |"), std::string::npos);
     EXPECT_NE(reference.find("| `--method NAME` | `auto` | auto, path, third"), std::string::npos);

@@ -63,11 +63,11 @@ std::vector<double> values_of(const core::Json& quantity, const PageArrays& arra
     const double high = quantity["high"];
     std::vector<double> values = codes_of(quantity, arrays);
     for (double& value : values) {
-        const double share = (value - 1.0) / (most - 1.0);
+        const double fraction = (value - 1.0) / (most - 1.0);
         if (quantity["coding"] == "linear") {
-            value = value == 0.0 ? NAN : low + (high - low) * share;
+            value = value == 0.0 ? NAN : low + (high - low) * fraction;
         } else {
-            value = value == 0.0 ? 0.0 : high * std::pow(low / high, 1.0 - share);
+            value = value == 0.0 ? 0.0 : high * std::pow(low / high, 1.0 - fraction);
         }
     }
     return values;

@@ -18,16 +18,16 @@ from conftest import LETTER
 
 
 def test_progress_is_told_and_can_stop(letter):
-    shares = []
-    nlos.render(letter, method="path", samples=512, progress=lambda share, text: shares.append((share, text)))
-    assert len(shares) >= 2 and shares == sorted(shares, key=lambda s: s[0])
-    assert shares[-1][0] == pytest.approx(1.0)
-    stopped = nlos.render(letter, method="path", samples=1_000_000, progress=lambda share, text: False)
+    fractions = []
+    nlos.render(letter, method="path", samples=512, progress=lambda fraction, text: fractions.append((fraction, text)))
+    assert len(fractions) >= 2 and fractions == sorted(fractions, key=lambda s: s[0])
+    assert fractions[-1][0] == pytest.approx(1.0)
+    stopped = nlos.render(letter, method="path", samples=1_000_000, progress=lambda fraction, text: False)
     assert stopped.scene_info["interrupted"] and stopped.H.any()
 
 
 def test_exceptions_of_the_callback_come_back(letter):
-    def fail(share, text):
+    def fail(fraction, text):
         raise KeyError("mine")
 
     for call in (lambda: nlos.render(letter, method="path", samples=1_000_000, progress=fail),

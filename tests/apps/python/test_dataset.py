@@ -29,15 +29,15 @@ def test_shards_of_module_and_program_have_the_same_bytes(program, tmp_path):
 
 
 def test_progress_stops_between_items(tmp_path):
-    shares = []
+    fractions = []
 
-    def report(share, text):
-        shares.append(share)
-        return len(shares) < 3
+    def report(fraction, text):
+        fractions.append(fraction)
+        return len(fractions) < 3
 
     stopped = nlos.generate(RECIPE, tmp_path / "set", progress=report, **TINY)
     assert stopped["interrupted"] and stopped["shards_written"] < 3
-    assert shares == sorted(shares)
+    assert fractions == sorted(fractions)
 
 
 @pytest.mark.parametrize("arguments, part", [

@@ -18,12 +18,12 @@ def grid(nx, ny):
     return np.stack([x, y, np.zeros_like(x)], axis=-1)
 
 
-def tal_like(H, laser, name, legs=False):
+def tal_like(H, laser, name, segments=False):
     points = grid(4, 3)
     return types.SimpleNamespace(
         H=H, H_format=HFormat[name], sensor_grid_xyz=points, sensor_grid_normals=np.zeros_like(points) + [0, 0, 1],
         laser_grid_xyz=laser, laser_grid_normals=np.zeros_like(laser) + [0, 0, 1], delta_t=0.01, t_start=0.5,
-        t_accounts_first_and_last_bounces=legs, laser_xyz=DEVICE, sensor_xyz=DEVICE + [0.1, 0, 0])
+        t_accounts_first_and_last_bounces=segments, laser_xyz=DEVICE, sensor_xyz=DEVICE + [0.1, 0, 0])
 
 
 def numbers(*shape):
@@ -39,15 +39,15 @@ def numbers(*shape):
     ],
     ids=["confocal", "single", "exhaustive"],
 )
-@pytest.mark.parametrize("legs", [False, True])
-def test_from_tal(H, laser, name, pattern, legs):
-    capture = nlos.from_tal(tal_like(H, laser, name, legs))
+@pytest.mark.parametrize("segments", [False, True])
+def test_from_tal(H, laser, name, pattern, segments):
+    capture = nlos.from_tal(tal_like(H, laser, name, segments))
     assert np.array_equal(capture.H, H)
     assert capture.pattern == pattern
     assert np.allclose(capture.sensing_points_m, grid(4, 3)) and np.allclose(capture.illumination_points_m, laser)
     assert (capture.bin_width_m, capture.opl_start_m) == (0.01, 0.5)
-    assert capture.opl_origin == ("device" if legs else "relay_wall")
-    if legs:
+    assert capture.opl_origin == ("device" if segments else "relay_wall")
+    if segments:
         assert np.allclose(capture.laser_m, DEVICE) and np.allclose(capture.detector_m, DEVICE + [0.1, 0, 0])
 
 

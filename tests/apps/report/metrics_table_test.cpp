@@ -30,7 +30,7 @@ TEST(Report, MarksTheBestValueOfEachMetric) {
     EXPECT_TRUE(contains(table, "<td class=\"best\" data-value=\"0.001\">1.00</td>"));  // mm, lower
     EXPECT_TRUE(contains(table, "<td class=\"best\" data-value=\"0.75\">75.0</td>"));   // %, higher
     EXPECT_TRUE(contains(table, "<td data-value=\"0.5\">50.0</td>"));
-    EXPECT_TRUE(contains(table, ">1.50</td>"));  // of another share of the surface: not the best
+    EXPECT_TRUE(contains(table, ">1.50</td>"));  // of another fraction of the surface: not the best
     EXPECT_EQ(count_of(table, "class=\"best\""), 2U);
     EXPECT_EQ(count_of(table, "<tr>"), 3U);
     EXPECT_EQ(count_of(table, "<span class=\"unit\">"), 3U);  // metrics nobody has are left out

@@ -250,7 +250,7 @@ TEST(Report, ResultsAreNamedByMethodAndByTheSettingsInWhichTheyDiffer) {
     results.scores.push_back(scored);
     label_by_method(results);
     std::vector<std::string> labels;
-    for (const ResultCard& card : results.volumes) labels.push_back(card.label);
+    for (const ResultPanel& panel : results.volumes) labels.push_back(panel.label);
     EXPECT_EQ(
         labels,
         (std::vector<std::string>{"lct, snr 0.1", "lct, snr 0.2", "bp", "fk, d", "fk, e", ""}));

@@ -12,7 +12,7 @@ using core::Vec3;
 
 /// How often each directed edge occurs, by the places of its ends: seams count as joined.
 std::map<std::pair<std::string, std::string>, int> directed_edges(const core::TriangleMesh& mesh) {
-    const auto place = [&](std::uint32_t vertex) {
+    const auto position = [&](std::uint32_t vertex) {
         std::string text;
         for (const double c : mesh.vertices[vertex]) {
             text += std::to_string(std::lround(1e6 * c)) + " ";
@@ -22,7 +22,7 @@ std::map<std::pair<std::string, std::string>, int> directed_edges(const core::Tr
     std::map<std::pair<std::string, std::string>, int> edges;
     for (const auto& triangle : mesh.triangles) {
         for (const std::size_t i : {0, 1, 2}) {
-            ++edges[{place(triangle[i]), place(triangle[(i + 1) % 3])}];
+            ++edges[{position(triangle[i]), position(triangle[(i + 1) % 3])}];
         }
     }
     return edges;

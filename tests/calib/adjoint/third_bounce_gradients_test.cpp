@@ -15,7 +15,7 @@ using test_support::GradientCase;
 using test_support::OccludedMesh;
 using test_support::random_point;
 
-// Rounding adds 1e-7 to differences over this step, and it is too short for the pieces that the
+// Rounding adds 1e-7 to differences over this step, and it is too short for the polygons that the
 // kernel sees to change their number more than now and then; over 1e-5 they do, and every time the
 // histograms jump by part of their error.
 constexpr double kStep_m = 1e-7;

@@ -145,7 +145,7 @@ bool is_hidden(const core::TriangleMesh& mesh, std::size_t own, const Vec3& from
 
 TEST(VisibleAreas, AgreeWithRays) {
     constexpr int kRays = 4000;
-    constexpr double kLargestError = 5.0 * 0.5;  // 5 standard deviations of a share of 1/2
+    constexpr double kLargestError = 5.0 * 0.5;  // 5 standard deviations of a fraction of 1/2
     double sum = 0.0;
     double expected_sum = 0.0;
     for (std::uint64_t number = 0; number < 12; ++number) {
@@ -164,8 +164,9 @@ TEST(VisibleAreas, AgreeWithRays) {
             int seen = 0;
             for (int i = 0; i < kRays && side(light) == side(sensor); ++i) {
                 const double root = std::sqrt(rng.uniform());
-                const double share = rng.uniform();
-                const Vec3 x = (1.0 - root) * v[a] + root * ((1.0 - share) * v[b] + share * v[c]);
+                const double fraction = rng.uniform();
+                const Vec3 x =
+                    (1.0 - root) * v[a] + root * ((1.0 - fraction) * v[b] + fraction * v[c]);
                 seen +=
                     !is_hidden(shapes.mesh, f, light, x) && !is_hidden(shapes.mesh, f, sensor, x);
             }
@@ -204,13 +205,13 @@ TEST(PairEvaluator, PullsTheSameWithAndWithoutWhatItSaw) {
     EXPECT_EQ(with.albedo, without.albedo);
 }
 
-/// The visible pieces of a facet from one wall point, and a random linear function of their
+/// The visible polygons of a facet from one wall point, and a random linear function of their
 /// corners.
-struct PieceCase {
+struct PolygonCase {
     core::TriangleMesh mesh;
     std::uint32_t facet;
     calib::MovedWallPoint wall;
-    calib::PieceCutter pieces;
+    calib::PolygonClipper polygons;
 
     void cut() {
         const calib::FacetTree tree(mesh);
@@ -224,15 +225,15 @@ struct PieceCase {
             0.0};
         views.look_at({&element, 1});
         const auto view = views.view(element.shape);
-        pieces.start(view.margin_m);
-        views.remove_shadows(0, view, pieces);
+        polygons.start(view.margin_m);
+        views.remove_shadows(0, view, polygons);
     }
 
     std::vector<std::vector<Vec3>> weights() const {
         core::Rng rng(test_support::seed_of("weights"), facet, 0);
-        std::vector<std::vector<Vec3>> result(pieces.num_pieces());
+        std::vector<std::vector<Vec3>> result(polygons.num_polygons());
         for (std::size_t i = 0; i < result.size(); ++i) {
-            for (std::size_t k = 0; k < pieces.piece(i).size(); ++k) {
+            for (std::size_t k = 0; k < polygons.polygon(i).size(); ++k) {
                 result[i].push_back(random_point(rng));
             }
         }
@@ -244,7 +245,7 @@ struct PieceCase {
         double sum = 0.0;
         for (std::size_t i = 0; i < factors.size(); ++i) {
             for (std::size_t k = 0; k < factors[i].size(); ++k) {
-                sum += factors[i][k].dot(pieces.piece(i)[k].share);
+                sum += factors[i][k].dot(polygons.polygon(i)[k].barycentric);
             }
         }
         return sum;
@@ -252,10 +253,10 @@ struct PieceCase {
     std::vector<Vec3> gradients() {
         cut();
         calib::CutPullback cuts;
-        cuts.start(pieces.lines());
+        cuts.start(polygons.lines());
         const auto factors = weights();
         for (std::size_t i = 0; i < factors.size(); ++i) {
-            cuts.add_piece(pieces.piece(i), factors[i]);
+            cuts.add_polygon(polygons.polygon(i), factors[i]);
         }
         std::vector<Vec3> by_vertices(mesh.vertices.size(), Vec3::Zero());
         std::array<Vec3, 3> by_corners{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
@@ -271,21 +272,21 @@ struct PieceCase {
     }
 };
 
-TEST(VisiblePieces, CornersMoveAsDifferencesSay) {
+TEST(VisiblePolygons, CornersMoveAsDifferencesSay) {
     constexpr double kStep_m = 1e-6;
     int num_shadows = 0;
     int num_pierced = 0;
     for (std::uint64_t number = 0; number < 6; ++number) {
         core::Rng rng(test_support::seed_of("pieces"), number, 0);
-        PieceCase example;
+        PolygonCase example;
         example.mesh = test_support::random_occluded_mesh(rng).mesh;
         example.wall.position = Vec3(rng.uniform() - 0.5, rng.uniform() - 0.5, 0.0);
         example.wall.normal = Vec3::UnitZ();
         for (example.facet = 0; example.facet < 8; ++example.facet) {
             const auto gradients = example.gradients();
-            for (std::size_t i = 0; i < example.pieces.num_pieces(); ++i) {
-                for (const auto& vertex : example.pieces.piece(i)) {
-                    const CutPlane plane = example.pieces.lines()[vertex.line].plane;
+            for (std::size_t i = 0; i < example.polygons.num_polygons(); ++i) {
+                for (const auto& vertex : example.polygons.polygon(i)) {
+                    const CutPlane plane = example.polygons.lines()[vertex.line].plane;
                     num_shadows += plane == CutPlane::ShadowEdge;
                     num_pierced += plane == CutPlane::Occluder;
                 }
@@ -295,7 +296,7 @@ TEST(VisiblePieces, CornersMoveAsDifferencesSay) {
             for (std::size_t v = 0; v < gradients.size(); ++v) {
                 for (Eigen::Index a = 0; a < 3; ++a) {
                     const auto moved = [&](double step) {
-                        PieceCase other = example;
+                        PolygonCase other = example;
                         other.mesh.vertices[v][a] += step;
                         return other.value();
                     };

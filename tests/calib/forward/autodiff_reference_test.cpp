@@ -28,11 +28,11 @@ TEST(TriangleSplines, GradientsMatchJets) {
             splines.evaluate(edge, true, values);
             reference.evaluate(edge, false, exact);
             for (std::size_t j = 0; j < 3; ++j) {
-                EXPECT_NEAR(values.share[j], exact.share[j].a, 1e-12);
+                EXPECT_NEAR(values.fraction[j], exact.fraction[j].a, 1e-12);
                 for (std::size_t k = 0; k < 3; ++k) {
                     const auto pair = renderer::TriangleSplines<double>::pair_index(j, k);
                     const double gradient = (j == k ? 2.0 : 1.0) * values.gradient[pair];
-                    EXPECT_NEAR(gradient, exact.share[j].v[static_cast<int>(k)], 1e-10);
+                    EXPECT_NEAR(gradient, exact.fraction[j].v[static_cast<int>(k)], 1e-10);
                 }
             }
         }

@@ -48,7 +48,7 @@ ForwardSettings forward_settings(std::size_t pairs) {
     ForwardSettings settings;
     settings.axis = test_support::kFitAxis;
     settings.sigma_m = kSigma_m;
-    settings.response_share = 0.7;
+    settings.response_fraction = 0.7;
     settings.offset_m.assign(pairs, 0.01);
     return settings;
 }
@@ -124,7 +124,7 @@ struct Rectangle {
         free.free.objects = {{"target", {"translation"}}};
         free.free.parameters.clear();
         model = std::make_unique<SceneModel>(geometry, free);
-        settings.response_share = 1.0;
+        settings.response_fraction = 1.0;
         settings.offset_m.assign(scan.num_pairs(), offset_m);
         settings.tolerance = tolerance;
         light = std::make_unique<ForwardModel>(*model, scan, calib::WallMotion(scan), settings);

@@ -78,7 +78,7 @@ Photograph photograph_of(const std::string& bytes) {
 }
 
 /// The largest difference from what OpenCV makes of the same bytes, in grey levels. Its decoder of
-/// PNG would convert colours to grey as light where a file states its gamma.
+/// PNG would convert colours to grey as light where a file gives its gamma.
 double largest_difference(const std::string& bytes) {
     cv::Mat expected = cv::imdecode(std::vector<unsigned char>(bytes.begin(), bytes.end()),
                                     cv::IMREAD_ANYCOLOR | cv::IMREAD_IGNORE_ORIENTATION);

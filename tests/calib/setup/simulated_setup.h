@@ -68,15 +68,15 @@ inline core::Capture direct_returns(const std::vector<double>& opl_m,
     capture.transient = core::Transient(opl_m.size(), capture.time_axis.num_bins);
     capture.unit = core::TransientUnit::Counts;
     std::mt19937_64 engine(test_support::seed_of(seed));
-    const auto share_below = [&](double delay) {
+    const auto fraction_below = [&](double delay) {
         return tail_m > 0.0 ? core::exponential_gaussian_cdf(delay, kSigma_m, tail_m)
                             : core::gaussian_cdf(delay, kSigma_m);
     };
     for (std::size_t p = 0; p < opl_m.size(); ++p) {
         for (int b = 0; b < capture.time_axis.num_bins; ++b) {
             const double mean =
-                0.05 + photons * (share_below(capture.time_axis.bin_begin_m(b + 1) - opl_m[p]) -
-                                  share_below(capture.time_axis.bin_begin_m(b) - opl_m[p]));
+                0.05 + photons * (fraction_below(capture.time_axis.bin_begin_m(b + 1) - opl_m[p]) -
+                                  fraction_below(capture.time_axis.bin_begin_m(b) - opl_m[p]));
             capture.transient.histogram(p)[static_cast<std::size_t>(b)] =
                 static_cast<float>(std::poisson_distribution<int>(mean)(engine));
         }

@@ -58,9 +58,9 @@ TEST(JointUpdate, IsKalmansInTheLinearLimit) {
     EXPECT_LT((update.targets[0].covariance - posterior).norm(), 0.03 * posterior.norm());
 }
 
-// 200 targets drawn from the prior: squared errors over stated covariances follow chi-square, whose
-// mean over 200 of 4 degrees of freedom lies between 3.3 and 4.8 but once in a thousand.
-TEST(JointUpdate, StatesItsErrors) {
+// 200 targets drawn from the prior: squared errors over reported covariances follow chi-square,
+// whose mean over 200 of 4 degrees of freedom lies between 3.3 and 4.8 but once in a thousand.
+TEST(JointUpdate, ReportsItsErrors) {
     const auto response = test_support::response_of(test_support::small_sensor());
     SeenVector mean;
     mean << 0.1, -0.1, 0.8, std::log(200.0);

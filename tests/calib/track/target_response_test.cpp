@@ -17,7 +17,7 @@ using test_support::small_sensor;
 
 const Vec3 kTarget(0.3, -0.2, 0.8);
 
-// The share of a pulse at `opl_m` in every bin, added up with a weight.
+// The fraction of a pulse at `opl_m` in every bin, added up with a weight.
 void add_pulse(const calib::TrackSensor& sensor,
                double opl_m,
                double weight,

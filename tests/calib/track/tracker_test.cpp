@@ -100,12 +100,12 @@ TEST(Tracker, NamesNothingInEmptyScenes) {
 TEST(Tracker, FollowsTwoTargets) {
     calib::TrackSettings settings = small_settings();
     settings.max_targets = 2;
-    const auto place = [](int f) {
+    const auto position = [](int f) {
         return std::vector{Vec3(-0.6 + 0.005 * f, 0.0, 0.6), Vec3(0.6, 0.0, 1.3 - 0.005 * f)};
     };
-    const auto estimates = track(frames_of(20, place), settings);
+    const auto estimates = track(frames_of(20, position), settings);
     ASSERT_EQ(named(estimates.back()), 2U);
-    for (const Vec3& truth : place(19)) {
+    for (const Vec3& truth : position(19)) {
         double nearest_m = 1.0;
         for (const auto& target : estimates.back().targets) {
             nearest_m = std::min(nearest_m, (target.state.position_m() - truth).norm());

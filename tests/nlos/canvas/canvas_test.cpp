@@ -92,7 +92,7 @@ TEST(Canvas, SvgHoldsLettersLinesAndImages) {
     EXPECT_EQ(root.attribute("viewBox").as_string(), std::string("0 0 150 75"));
     EXPECT_EQ(root.select_nodes("//*[local-name()='image']").size(), 1U);
     EXPECT_GE(root.select_nodes("//*[local-name()='use']").size(), 8U) << "letters";
-    // Cairo 1.16 states the line's width in its style, 1.18 in an attribute.
+    // Cairo 1.16 writes the line's width in its style, 1.18 in an attribute.
     const auto lines = root.select_nodes(
         "//*[local-name()='path'][@stroke-width or contains(@style, 'stroke-width')]");
     ASSERT_EQ(lines.size(), 1U);

@@ -98,10 +98,11 @@ TEST(Compare, BestMaskIouIsTheBestOfAllThresholds) {
         }
         const ThresholdedMask exact = best_mask(image, truth).value();
         EXPECT_DOUBLE_EQ(exact.iou, best);
-        // Just below its share of the maximum lies the threshold that gives it.
+        // Just below its fraction of the maximum lies the threshold that gives it.
         EXPECT_DOUBLE_EQ(
-            mask_iou(mask_above_share(image, exact.share * (1.0 - 1e-6)), truth).value(), best);
-        EXPECT_GE(exact.iou, mask_iou(mask_above_share(image, 0.2), truth).value_or(0.0));
+            mask_iou(mask_above_fraction(image, exact.fraction * (1.0 - 1e-6)), truth).value(),
+            best);
+        EXPECT_GE(exact.iou, mask_iou(mask_above_fraction(image, 0.2), truth).value_or(0.0));
     }
 }
 

@@ -139,10 +139,10 @@ TEST(ShardFiles, TarHasTheHeadersOfUstar) {
     EXPECT_STREQ(bytes.c_str() + 1536, "block");
     for (const std::size_t begin : {0, 1024, 1536}) {
         std::string header = bytes.substr(begin, 512);
-        const unsigned stated =
+        const unsigned stored =
             static_cast<unsigned>(std::stoul(header.substr(148, 6), nullptr, 8));
         header.replace(148, 8, "        ");
-        EXPECT_EQ(stated, std::accumulate(header.begin(), header.end(), 0U));
+        EXPECT_EQ(stored, std::accumulate(header.begin(), header.end(), 0U));
     }
     EXPECT_EQ(bytes.substr(bytes.size() - 1024), std::string(1024, '\0'));
 }

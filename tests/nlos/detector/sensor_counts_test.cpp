@@ -50,7 +50,7 @@ TEST(SensorCounts, CrosstalkMovesLightToNeighboursAndLosesNone) {
     EXPECT_FLOAT_EQ(static_cast<float>(sum(capture.transient)), 100.0F);
 }
 
-TEST(SensorCounts, GlassSendsBackAShareOfAWhiteWallAtTimeZero) {
+TEST(SensorCounts, GlassSendsBackAFractionOfAWhiteWallAtTimeZero) {
     core::SensorSetup setup = straight_sensor();
     setup.model.detector.zone_crosstalk = 0.0;
     setup.model.detector.cover_glass_crosstalk = 0.5;

@@ -166,7 +166,7 @@ TEST(CaptureConversion, StanfordFilesRefuseOtherScans) {
     expect(example_capture(ScanPattern::Confocal), "square");
     Capture capture = test_support::example_square();
     capture.scan.wall().opl_origin = core::OplOrigin::Device;
-    expect(capture, "device legs");
+    expect(capture, "device segments");
     capture = test_support::example_square();
     capture.scan.wall().sensing.positions[4].z() = 0.01;
     expect(capture, "point 4");

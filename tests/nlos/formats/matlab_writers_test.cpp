@@ -115,7 +115,7 @@ TEST(StanfordFkWriter, RefusesWhatIsNoSquare) {
     expect(test_support::example_image(), "camera");
     Capture capture = example_square();
     capture.scan.wall().opl_origin = core::OplOrigin::Device;
-    expect(capture, "device legs");
+    expect(capture, "device segments");
 }
 
 TEST(StanfordFkWriter, NamesWhatIsLeftOut) {
@@ -259,7 +259,7 @@ TEST(ConvNlosWriter, RefusesWhatIsNotOnTheWallAtZero) {
     expect(test_support::example_image(), "camera");
     Capture capture = example_capture(ScanPattern::Exhaustive);
     capture.scan.wall().opl_origin = core::OplOrigin::Device;
-    expect(capture, "device legs");
+    expect(capture, "device segments");
     capture = example_capture(ScanPattern::Exhaustive);
     capture.scan.wall().sensing.positions[4].z() = 0.01;
     expect(capture, "point 4");

@@ -123,7 +123,7 @@ TEST(NpzCapture, WhatIsMissingIsAssumedAndSaid) {
     EXPECT_EQ(capture.scan.wall().sensing.normals[1], core::Vec3::UnitZ());
     std::string notes;
     for (const std::string& note : capture.notes) notes += note + "\n";
-    for (const char* name : {"unit", "t_start", "sensor_grid_normals", "device legs"}) {
+    for (const char* name : {"unit", "t_start", "sensor_grid_normals", "device segments"}) {
         EXPECT_NE(notes.find(name), std::string::npos) << name;
     }
 }

@@ -329,7 +329,7 @@ TEST(YtalCapture, NumbersInSceneInfoAreNumbersInYamlToo) {
     EXPECT_EQ(core::Json::parse(text), info);
 }
 
-TEST(YtalCapture, DescriptionStatesWallBinsAndUnit) {
+TEST(YtalCapture, DescriptionGivesWallBinsAndUnit) {
     std::string text;
     for (const auto& line : describe_capture(example_capture(ScanPattern::Confocal))) text += line;
     EXPECT_NE(text.find("confocal, 3 x 2 sensing points over 0.2 x 0.1 x 0 m"), std::string::npos);

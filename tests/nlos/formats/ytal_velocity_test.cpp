@@ -71,7 +71,7 @@ TEST(YtalVelocity, VelocitiesWithoutAnAxisAreRefused) {
     EXPECT_ERROR_WITH(write_capture(folder.file("a.h5"), capture), "bin_width_m_per_s: found -1");
 }
 
-TEST(YtalVelocity, DescriptionStatesVelocitiesAndFrequencyShifts) {
+TEST(YtalVelocity, DescriptionGivesVelocitiesAndFrequencyShifts) {
     std::string text;
     const Capture capture = with_velocities(example_capture(ScanPattern::Confocal), true);
     for (const auto& line : describe_capture(capture)) text += line;

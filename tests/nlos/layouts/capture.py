@@ -23,7 +23,7 @@ class Capture:
     H             float32, (T, Sx, Sy), (T, Si), (T, Lx, Ly, Sx, Sy) or (T, Li, Si)
     sensing       points on the wall, (X, Y, 3) or (N, 3); so is `illumination`
     pattern       "confocal", "single" or "exhaustive"
-    opl_origin    "relay_wall", or "device" where lengths include the legs to laser and detector
+    opl_origin    "relay_wall", or "device" where lengths include the segments to laser and detector
     frames        (F, as H) of a sequence, whose last frame is H
     by_order      (K, as H), which sum to H, with their bounce orders in `orders`
     observed      (2, as H without T): first bin that could be recorded, and the one past the last
@@ -99,7 +99,7 @@ def read_ytal(path: str) -> Capture:
         sensing = file["sensor_grid_xyz"][()].astype(np.float64)
         illumination = file["laser_grid_xyz"][()].astype(np.float64)
         H = file["H"][()]
-        legs = bool(file["t_accounts_first_and_last_bounces"][()])
+        segments = bool(file["t_accounts_first_and_last_bounces"][()])
         return Capture(
             H=H, sensing=sensing, illumination=illumination,
             sensing_normals=file["sensor_grid_normals"][()].astype(np.float64),
@@ -107,7 +107,7 @@ def read_ytal(path: str) -> Capture:
             start_m=float(file["t_start"][()]), bin_width_m=float(file["delta_t"][()]),
             pattern=_pattern(H, sensing, illumination),
             unit=str(own.attrs["unit"]) if own else "radiance",
-            opl_origin="device" if legs else "relay_wall",
+            opl_origin="device" if segments else "relay_wall",
             laser_m=file["laser_xyz"][()].astype(np.float64),
             detector_m=file["sensor_xyz"][()].astype(np.float64),
             frames=own["frames"][()] if "frames" in own else None,

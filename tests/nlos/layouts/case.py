@@ -27,7 +27,7 @@ class Source:
     size_m        from the first to the last point along x and y
     lit_points    illumination points along x and y of an exhaustive scan
     laser_at      index of the sensing point that a single laser lights
-    legs          whether lengths include the legs to the devices
+    segments      whether lengths include the segments to the devices
     device_m      how far in front of the wall's middle both devices stand; 0: elsewhere, apart
     by_order      whether bounce orders are kept apart
     """
@@ -40,7 +40,7 @@ class Source:
     start_m: float = 0.0
     lit_points: tuple[int, int] = (3, 2)
     laser_at: tuple[int, int] = (2, 3)
-    legs: bool = False
+    segments: bool = False
     device_m: float = 0.0
     by_order: bool = False
 

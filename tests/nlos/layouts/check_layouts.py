@@ -6,7 +6,7 @@
 
 For each layout: the program renders a capture, write_layouts.py writes it in that layout, `nlos
 convert` reads it, and histograms must agree bit for bit, points to a micrometre, the axis to 1e-9,
-unit, pattern and legs exactly. Prints a line per case; exit status 1 if any failed, 77 if numpy,
+unit, pattern and segments exactly. Prints a line per case; exit status 1 if any failed, 77 if numpy,
 scipy or h5py are missing.
 """
 from __future__ import annotations

@@ -13,7 +13,7 @@ NORMAL_TOLERANCE = 1e-6
 
 
 def _scan_differences(expected: Capture, found: Capture) -> list[str]:
-    """Unit, legs, devices and axis."""
+    """Unit, segments, devices and axis."""
     differences = [f"{name} is {getattr(found, name)}, not {getattr(expected, name)}"
                    for name in ("unit", "opl_origin", "num_bins")
                    if getattr(found, name) != getattr(expected, name)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Layouts that state points and axis themselves: Zaragoza, NLOS-DIRAC, Bonn, y-tal, npz."""
+"""Layouts that give points and axis themselves: Zaragoza, NLOS-DIRAC, Bonn, y-tal, npz."""
 from __future__ import annotations
 
 import json
@@ -42,10 +42,10 @@ def _in_zaragoza_order(parts: np.ndarray, pattern: str) -> np.ndarray:
 def write_zaragoza(capture: Capture, folder: Path, reverse: bool, matlab: bool = False) -> Written:
     """data (y, x, bounce, t, colour), or with (y, x) of the laser and of the camera in front, or
     all of that in reverse; grids (y, x, 3) accordingly. The axis starts at t0 with bins of deltaT,
-    both metres, legs included. Colours are to be summed; bounces are kept by order, from the two
+    both metres, segments included. Colours are to be summed; bounces are kept by order, from the two
     that light takes from the laser's spot straight to another point of the wall."""
     require(capture.opl_origin == "device" and capture.sensing.ndim == 3, "zaragoza",
-            "grids, and lengths that include the legs")
+            "grids, and lengths that include the segments")
     parts = _in_parts(capture.H)
     data = _in_zaragoza_order(parts, capture.pattern)
 
@@ -83,7 +83,7 @@ def write_zaragoza(capture: Capture, folder: Path, reverse: bool, matlab: bool =
 
 def write_nlos_dirac(capture: Capture, folder: Path) -> Written:
     """data_t (t, x, y) at points xg, yg (x, y) of the wall z = 0, lengths da of the bins' starts;
-    with an offset of the laser the legs are no part of them."""
+    with an offset of the laser the segments are no part of them."""
     require_confocal_grid(capture, "nlos-dirac")
     points = capture.sensing
     path = folder / "letter_dirac.hdf5"
@@ -149,18 +149,18 @@ def write_npz(capture: Capture, folder: Path) -> Written:
 
 
 _SINGLE = Source(pattern="single")
-_AWAY = {"legs": True, "num_bins": 384, "start_m": 0.5}
+_AWAY = {"segments": True, "num_bins": 384, "start_m": 0.5}
 _EXHAUSTIVE = Source(pattern="exhaustive", points=(5, 4), size_m=(0.6, 0.45))
 _LIST = Source(points=(40,))
-_WITH_LEGS = Source(**_AWAY)
+_WITH_SEGMENTS = Source(**_AWAY)
 
 CASES = [
     *(Case(f"zaragoza, {source.pattern}, {'reversed' if reverse else 'as written'}", source,
            partial(write_zaragoza, reverse=reverse))
-      for source in (_WITH_LEGS, replace(_WITH_LEGS, pattern="single"),
+      for source in (_WITH_SEGMENTS, replace(_WITH_SEGMENTS, pattern="single"),
                      replace(_EXHAUSTIVE, **_AWAY))
       for reverse in (False, True)),
-    Case("zaragoza in v5", _WITH_LEGS, partial(write_zaragoza, reverse=False, matlab=True)),
+    Case("zaragoza in v5", _WITH_SEGMENTS, partial(write_zaragoza, reverse=False, matlab=True)),
     Case("nlos-dirac", Source(), write_nlos_dirac),
     *(Case(f"bonn-ti, TI{version:02}", replace(_SINGLE, points=(13, 9), laser_at=(6, 4)),
            partial(write_bonn_ti, version=version)) for version in (4, 1, 0)),

@@ -111,9 +111,9 @@ TEST(Layouts, AxesMayStandInAnyOrder) {
                 for (std::size_t t = 0; t < kCubeBins; ++t) {
                     EXPECT_EQ(capture.transient.histogram(pair)[t], cube_value(x, y, t));
                 }
-                const core::Vec3 place(
+                const core::Vec3 position(
                     -0.5 + static_cast<double>(x), 1.0 - static_cast<double>(y), 0.0);
-                EXPECT_LT((capture.scan.wall().sensing.positions[pair] - place).norm(), 1e-12);
+                EXPECT_LT((capture.scan.wall().sensing.positions[pair] - position).norm(), 1e-12);
             }
         }
     } while (std::next_permutation(axes.begin(), axes.end()));

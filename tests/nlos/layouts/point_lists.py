@@ -81,10 +81,10 @@ def write_surface_optimisation(capture: Capture, folder: Path) -> Written:
 
 def write_phasor_field_2019(capture: Capture, folder: Path) -> Written:
     """Struct `dataset`: data (laser, camera, t), positions (N, 3) and devices [m], t0 and deltat
-    [m]; lengths include the legs. One camera spot and many laser spots: the published captures
+    [m]; lengths include the segments. One camera spot and many laser spots: the published captures
     move the laser, so a single-laser scan is written with lasers and cameras exchanged, which by
     reciprocity is the same measurement."""
-    require(capture.opl_origin == "device", "phasor-field-2019", "lengths that include the legs")
+    require(capture.opl_origin == "device", "phasor-field-2019", "lengths that include the segments")
     counted = capture.as_counts()
     listed = counted.as_list()
     single = capture.pattern == "single"
@@ -150,7 +150,7 @@ def write_conv_nlos(capture: Capture, folder: Path) -> Written:
 _PITCH_M = 0.05
 _ON_PITCH = Source(points=(12, 9), size_m=(11 * _PITCH_M, 8 * _PITCH_M))
 _EXHAUSTIVE = Source(pattern="exhaustive", points=(5, 4), size_m=(0.6, 0.45))
-_AWAY = {"legs": True, "num_bins": 384, "start_m": 0.5}
+_AWAY = {"segments": True, "num_bins": 384, "start_m": 0.5}
 
 CASES = [
     *(Case(f"general-nlos, {pattern}", replace(_ON_PITCH, pattern=pattern, points=points),

@@ -41,7 +41,7 @@ def _scan(source: Source) -> dict:
         scan["illumination_m"] = [
             -span / 2 + span * at / (count - 1)
             for span, at, count in zip(source.size_m, source.laser_at, source.points)] + [0]
-    if source.legs:
+    if source.segments:
         both = [0.0, 0.0, source.device_m]
         laser_m, detector_m = (both, both) if source.device_m else (LASER_M, DETECTOR_M)
         scan |= {"opl_origin": "device", "laser_m": laser_m, "detector_m": detector_m}

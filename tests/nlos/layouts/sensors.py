@@ -83,7 +83,7 @@ def write_ams_tmf8829(capture: Capture, folder: Path) -> Written:
     """A log of Result_Set: per frame rows of zones with {"bin": 64 counts}. Neither the wall nor
     the width of bins is in it. Lengths start and end at the sensor."""
     require_confocal_grid(capture, "ams-tmf8829")
-    require(capture.opl_origin == "device", "ams-tmf8829", "lengths that include the legs")
+    require(capture.opl_origin == "device", "ams-tmf8829", "lengths that include the segments")
     expected = replace(capture.as_counts(), start_m=0.0)
     frames = _frames(expected)
 
@@ -108,7 +108,7 @@ def write_ams_tmf882x_log(capture: Capture, folder: Path) -> Written:
     stands in another bin than the peak of all frames together. Where the device stands and what
     its zones see of the wall is not in it."""
     require_confocal_grid(capture, "ams-tmf882x-log")
-    require(capture.opl_origin == "device", "ams-tmf882x-log", "lengths that include the legs")
+    require(capture.opl_origin == "device", "ams-tmf882x-log", "lengths that include the segments")
     expected = replace(capture.as_counts(), start_m=TMF882X_START_M)
     frames = _frames(expected)
     reference = np.zeros((len(frames), expected.num_bins), int)
@@ -129,7 +129,7 @@ def write_ams_tmf882x(capture: Capture, folder: Path, suffix: str) -> Written:
     Lengths start and end at the device; the reflection inside it, of length 0, is centred in bin
     13."""
     require_confocal_grid(capture, "ams-tmf882x")
-    require(capture.opl_origin == "device", "ams-tmf882x", "lengths that include the legs")
+    require(capture.opl_origin == "device", "ams-tmf882x", "lengths that include the segments")
     seen_from_device = [-1.0, 1.0, -1.0]
     turned = capture.with_points((capture.sensing - capture.laser_m) * seen_from_device)
     towards_device = -turned.sensing_normals
@@ -156,12 +156,12 @@ CASES = [
     Case("st-vl53l8", Source(points=(4, 4), num_bins=128, bin_width_m=picoseconds_m(ST_BIN_PS)),
          write_st_vl53l8),
     Case("ams-tmf8829", Source(points=(16, 16), num_bins=TMF8829_BINS, bin_width_m=0.05,
-                               legs=True, device_m=0.4), write_ams_tmf8829),
+                               segments=True, device_m=0.4), write_ams_tmf8829),
     Case("ams-tmf882x-log",
          Source(points=(3, 3), num_bins=128, bin_width_m=picoseconds_m(TMF882X_BIN_PS),
-                start_m=TMF882X_START_M, legs=True, device_m=0.4), write_ams_tmf882x_log),
+                start_m=TMF882X_START_M, segments=True, device_m=0.4), write_ams_tmf882x_log),
     *(Case(f"ams-tmf882x as {suffix}",
            Source(points=(3, 3), num_bins=128, bin_width_m=picoseconds_m(TMF882X_BIN_PS),
-                  start_m=TMF882X_START_M, legs=True, device_m=0.4),
+                  start_m=TMF882X_START_M, segments=True, device_m=0.4),
            partial(write_ams_tmf882x, suffix=suffix)) for suffix in ("npz", "json")),
 ]

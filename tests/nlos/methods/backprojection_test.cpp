@@ -68,11 +68,12 @@ PairList<double> pair_list(const Problem& problem, std::span<const double> histo
                           problem.compensation};
     if (scan.opl_origin == core::OplOrigin::Device) {
         for (std::size_t i = 0; i < scan.illumination.size(); ++i) {
-            data.illumination_legs_m[i] =
+            data.illumination_segments_m[i] =
                 (scan.illumination.positions[i] - scan.laser_position).norm();
         }
         for (std::size_t i = 0; i < scan.sensing.size(); ++i) {
-            data.sensing_legs_m[i] = (scan.sensing.positions[i] - scan.detector_position).norm();
+            data.sensing_segments_m[i] =
+                (scan.sensing.positions[i] - scan.detector_position).norm();
         }
     }
     return data;
@@ -92,8 +93,8 @@ std::vector<double> run_pairs_in_float(const Problem& problem, std::span<const d
                                rounded,
                                exact.illumination,
                                exact.sensing,
-                               exact.illumination_legs_m,
-                               exact.sensing_legs_m,
+                               exact.illumination_segments_m,
+                               exact.sensing_segments_m,
                                exact.compensation};
     std::vector<float> volume(problem.voxels.num_voxels(), 0.0F);
     backproject_pairs<float>(data, problem.voxels, volume, {});
@@ -111,9 +112,9 @@ std::vector<double> run_grid(const Problem& problem, std::span<const double> his
     return volume;
 }
 
-double lost_light(Compensation compensation, double product_of_legs) {
+double lost_light(Compensation compensation, double product_of_segments) {
     if (compensation == Compensation::None) return 1.0;
-    return std::pow(product_of_legs, compensation == Compensation::Diffuse ? 2.0 : 1.0);
+    return std::pow(product_of_segments, compensation == Compensation::Diffuse ? 2.0 : 1.0);
 }
 
 /// The forward model that backprojection transposes: each voxel's light enters the two bins whose
@@ -131,7 +132,7 @@ std::vector<double> project(const Problem& problem, std::span<const double> volu
                 for (const double z : voxels.z_m) {
                     const Vec3 p(x, y, z);
                     const double opl =
-                        (l - p).norm() + (p - s).norm() + problem.scan.device_legs_m(pair);
+                        (l - p).norm() + (p - s).norm() + problem.scan.device_segments_m(pair);
                     const double factor =
                         lost_light(problem.compensation, (l - p).norm() * (p - s).norm());
                     const double position =
@@ -226,7 +227,7 @@ TEST(Backprojection, OfACaptureCountingDownEqualsThatOfPairs) {
     expect_equal(run_grid(problem, y), run_pairs(problem, y), 1e-10);
 }
 
-TEST(Backprojection, OfAGridTakesDeviceLegsOffByFractionsOfABin) {
+TEST(Backprojection, OfAGridTakesDeviceSegmentsOffByFractionsOfABin) {
     const auto points = nlos_test::wall_grid({8, 8}, {0.05, 0.05});
     core::Capture capture = nlos_test::confocal_capture(points, {1.0, 0.01, 200});
     capture.scan.wall().opl_origin = core::OplOrigin::Device;
@@ -249,7 +250,7 @@ TEST(Backprojection, OfAGridTakesDeviceLegsOffByFractionsOfABin) {
                                        progress},
                                       {},
                                       1);
-    // A bin covers 5 mm of depth: legs rounded to whole bins would smear and shift the peak.
+    // A bin covers 5 mm of depth: segments rounded to whole bins would smear and shift the peak.
     EXPECT_LT((nlos_test::brightest_point(volume) - scatterer).norm(), 5e-4);
 }
 

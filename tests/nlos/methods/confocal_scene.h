@@ -46,7 +46,7 @@ inline void add_scatterer(core::Capture& capture, const core::Vec3& position, do
         const double out =
             (scan.illumination.positions[scan.illumination_index(pair)] - position).norm();
         const double back = (scan.sensing.positions[scan.sensing_index(pair)] - position).norm();
-        const double opl = out + back + scan.device_legs_m(pair);
+        const double opl = out + back + scan.device_segments_m(pair);
         const double bin = (opl - axis.opl_start_m) / axis.bin_width_m - 0.5;
         const double first = std::floor(bin);
         if (first < 0.0 || first + 1.0 >= axis.num_bins) continue;

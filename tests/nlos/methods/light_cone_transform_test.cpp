@@ -63,7 +63,7 @@ TEST(LightConeTransform, FindsAPointOnOblongGridsWithUnequalPitch) {
     }
 }
 
-TEST(LightConeTransform, TakesDeviceLegsOffEveryPoint) {
+TEST(LightConeTransform, TakesDeviceSegmentsOffEveryPoint) {
     core::Capture capture = confocal_capture(wall_grid({16, 16}, {0.05, 0.05}), {0.9, 0.016, 160});
     capture.scan.wall().opl_origin = core::OplOrigin::Device;
     capture.scan.wall().laser_position = Vec3(0.5, 0.3, -0.6);

@@ -107,7 +107,7 @@ TEST(Methods, ServeEveryScanOrNameOneThatDoes) {
 }
 
 // What bench holds the time of a method against.
-TEST(Methods, StateTheWorkThatTheyCannotDoWithout) {
+TEST(Methods, ReportTheWorkThatTheyCannotDoWithout) {
     const core::Capture capture = every_scan().at("confocal grid");
     for (const MethodCase& method : every_method()) {
         if (method.iterates()) continue;

@@ -60,7 +60,7 @@ double field_magnitude(const core::Capture& capture, const Vec3& p) {
     for (std::size_t pair = 0; pair < scan.num_pairs(); ++pair) {
         const Vec3& l = scan.illumination.positions[scan.illumination_index(pair)];
         const Vec3& s = scan.sensing.positions[scan.sensing_index(pair)];
-        const double opl = (l - p).norm() + (p - s).norm() + scan.device_legs_m(pair);
+        const double opl = (l - p).norm() + (p - s).norm() + scan.device_segments_m(pair);
         const auto histogram = capture.transient.histogram(pair);
         for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
             const double center = capture.time_axis.bin_center_m(static_cast<double>(bin));

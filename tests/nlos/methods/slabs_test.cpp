@@ -87,7 +87,7 @@ TEST(FrequencySlabs, GiveTheSameVolumeInAnyNumber) {
     }
 }
 
-TEST(FrequencySlabs, TakeTheMemoryThatIsStatedAndLessInMore) {
+TEST(FrequencySlabs, TakeTheMemoryThatIsReportedAndLessInMore) {
 #ifdef __SANITIZE_ADDRESS__
     GTEST_SKIP() << "the address sanitizer keeps memory that was given back";
 #endif

@@ -31,7 +31,7 @@ ImagePanel small_panel() {
     return panel;
 }
 
-/// Where the panel's red pixels (its largest values) lie, as shares of its white picture; the
+/// Where the panel's red pixels (its largest values) lie, as fractions of its white picture; the
 /// colour bar, which holds the same red in a narrow strip at the right, is left out.
 std::array<double, 2> centre_of_red(const ImagePanel& panel) {
     const cv::Mat picture = decoded_png(encode_panels({panel}, 1));

@@ -65,7 +65,7 @@ TEST(Pictures, ViewsOfDeepVolumesShareTheScaleOfTheWall) {
     EXPECT_EQ(std::get<ImagePanel>(panels[2]).x_range, front.x_range);
 }
 
-TEST(Pictures, UnitOfRadianceIsStatedOfRenderedCapturesAlone) {
+TEST(Pictures, UnitOfRadianceIsGivenOfRenderedCapturesAlone) {
     core::Capture capture = test_support::example_capture(core::ScanPattern::Confocal);
     const auto label = [&] { return std::get<ImagePanel>(capture_panels(capture)[0]).value_label; };
     EXPECT_EQ(label(), "radiance per bin") << "of a file that says no more";
@@ -82,7 +82,7 @@ TEST(Pictures, FrontViewShowsWhatAnEyeAtTheWallSees) {
     const std::vector<Panel> panels = volume_panels(result);
     ASSERT_EQ(panels.size(), 4U);
     const ImagePanel& front = image(panels[0]);
-    EXPECT_EQ(front.values, (std::vector<float>{0.25F, 0.0F, 1.0F}));  // shares of the maximum
+    EXPECT_EQ(front.values, (std::vector<float>{0.25F, 0.0F, 1.0F}));  // fractions of the maximum
     EXPECT_EQ(front.x_direction, AxisDirection::Reversed);
     EXPECT_EQ(front.y_direction, AxisDirection::Usual);
     EXPECT_NEAR(front.x_range[0], -0.05, 1e-12);

@@ -18,36 +18,36 @@ Plot plot_with(std::vector<PlotLine> lines) {
 }
 
 /// The columns and rows of a picture of one plot in which the colour of one of its lines appears.
-struct Place {
+struct Pixels {
     std::vector<int> columns;
     std::vector<int> rows;
 };
-Place place_of(std::size_t line, const Plot& plot) {
+Pixels pixels_of(std::size_t line, const Plot& plot) {
     const cv::Mat picture = test_support::decoded_png(encode_panels({plot}, 1));
     const Colour colour = series_colour(line);
-    Place place;
+    Pixels pixels;
     for (int x = 0; x < picture.cols; ++x) {
         for (int y = 0; y < picture.rows; ++y) {
             if (picture.at<cv::Vec3b>(y, x) != cv::Vec3b(colour.blue, colour.green, colour.red)) {
                 continue;
             }
-            place.columns.push_back(x);
-            place.rows.push_back(y);
+            pixels.columns.push_back(x);
+            pixels.rows.push_back(y);
         }
     }
-    return place;
+    return pixels;
 }
 
 /// Where the middle of the only point of a line without a title is drawn.
 std::array<double, 2> middle_of(std::size_t line, const Plot& plot) {
-    const Place place = place_of(line, plot);
-    EXPECT_FALSE(place.columns.empty());
+    const Pixels pixels = pixels_of(line, plot);
+    EXPECT_FALSE(pixels.columns.empty());
     std::array<double, 2> sums{};
-    for (std::size_t i = 0; i < place.columns.size(); ++i) {
-        sums[0] += place.columns[i];
-        sums[1] += place.rows[i];
+    for (std::size_t i = 0; i < pixels.columns.size(); ++i) {
+        sums[0] += pixels.columns[i];
+        sums[1] += pixels.rows[i];
     }
-    const auto count = static_cast<double>(place.columns.size());
+    const auto count = static_cast<double>(pixels.columns.size());
     return {sums[0] / count, sums[1] / count};
 }
 
@@ -80,9 +80,9 @@ TEST(Plot, TheLegendHasAnEntryForEveryTitle) {
     for (int i = 0; i < 5; ++i) plot.lines.push_back({"line", {1.0 + i}, {1.0 + i}});
     const int height = test_support::decoded_png(encode_panels({plot}, 1)).rows;
     for (std::size_t i = 0; i < plot.lines.size(); ++i) {
-        const Place place = place_of(i, plot);
-        EXPECT_GT(*std::ranges::max_element(place.rows), 800) << "below the axes";
-        EXPECT_LT(*std::ranges::max_element(place.rows), height);
+        const Pixels pixels = pixels_of(i, plot);
+        EXPECT_GT(*std::ranges::max_element(pixels.rows), 800) << "below the axes";
+        EXPECT_LT(*std::ranges::max_element(pixels.rows), height);
     }
     for (PlotLine& line : plot.lines)
         line.title =

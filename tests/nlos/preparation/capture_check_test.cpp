@@ -35,7 +35,7 @@ TEST(CaptureCheck, WarnsOfLightBeforeTheShortestPath) {
     EXPECT_NE(warnings[0].find("time zero"), std::string::npos) << warnings[0];
 }
 
-TEST(CaptureCheck, WarnsOfBinsThatAreStatedTooWide) {
+TEST(CaptureCheck, WarnsOfBinsThatAreGivenTooWide) {
     core::Capture capture = lit_capture();
     capture.time_axis.bin_width_m *= 2.0;
     const auto warnings = capture_warnings(capture);
@@ -61,7 +61,7 @@ core::Capture bar_capture(core::TransientUnit unit) {
     return capture;
 }
 
-TEST(CaptureCheck, WarnsOfBinsStatedTooWideOrTooNarrow) {
+TEST(CaptureCheck, WarnsOfBinsGivenTooWideOrTooNarrow) {
     for (const auto unit : {core::TransientUnit::Radiance, core::TransientUnit::Counts}) {
         const core::Capture right = bar_capture(unit);
         EXPECT_TRUE(capture_warnings(right).empty());

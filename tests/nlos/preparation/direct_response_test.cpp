@@ -18,10 +18,10 @@ const core::ExponentialGaussianResponse kResponse{core::sigma_m_from_fwhm_ps(250
 
 /// Counts of a plate 0.55 m before a confocal grid, with the wall's direct return of 3,000 photons
 /// at a path length of `direct_m`, on an axis that begins 0.3 m before that of 0.
-core::Capture plate_with_direct_return(double direct_m, bool has_device_legs) {
+core::Capture plate_with_direct_return(double direct_m, bool has_device_segments) {
     core::Capture capture = nlos_test::confocal_capture(
         nlos_test::wall_grid({16, 16}, {0.05, 0.05}), {-0.3, 0.01, 240});
-    if (has_device_legs) {
+    if (has_device_segments) {
         capture.scan.wall().opl_origin = core::OplOrigin::Device;
         capture.scan.wall().laser_position = core::Vec3(0.1, -0.1, 0.8);
         capture.scan.wall().detector_position = core::Vec3(0.0, 0.1, 0.8);
@@ -38,10 +38,10 @@ core::Capture plate_with_direct_return(double direct_m, bool has_device_legs) {
     for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
         auto histogram = capture.transient.histogram(pair);
         for (float& value : histogram) value *= 100.0F / largest;
-        const double bin =
-            (direct_m + capture.scan.wall().device_legs_m(pair) - capture.time_axis.opl_start_m) /
-                0.01 -
-            0.5;
+        const double bin = (direct_m + capture.scan.wall().device_segments_m(pair) -
+                            capture.time_axis.opl_start_m) /
+                               0.01 -
+                           0.5;
         const auto before = static_cast<std::size_t>(bin);
         const auto late = static_cast<float>(bin - std::floor(bin));
         histogram[before] += 3e3F * (1.0F - late);
@@ -58,15 +58,15 @@ core::Capture plate_with_direct_return(double direct_m, bool has_device_legs) {
 }
 
 TEST(DirectResponse, ShowsTheResponse) {
-    for (const bool has_device_legs : {false, true}) {
-        const core::Capture capture = plate_with_direct_return(0.0, has_device_legs);
+    for (const bool has_device_segments : {false, true}) {
+        const core::Capture capture = plate_with_direct_return(0.0, has_device_segments);
         const auto direct = measure_direct_return(capture);
         ASSERT_TRUE(direct.has_value());
         EXPECT_NEAR(direct->response.jitter_fwhm_ps, 250.0, 12.0);
         EXPECT_NEAR(direct->response.tail_ps, 120.0, 12.0);
-        const double longest_legs = core::device_leg_range_m(capture.scan.wall())[1];
-        EXPECT_GT(direct->end_opl_m, longest_legs + 4.0 * kResponse.tail_m);
-        EXPECT_LT(direct->end_opl_m, longest_legs + 0.5);
+        const double longest_segments = core::device_segment_range_m(capture.scan.wall())[1];
+        EXPECT_GT(direct->end_opl_m, longest_segments + 4.0 * kResponse.tail_m);
+        EXPECT_LT(direct->end_opl_m, longest_segments + 0.5);
     }
 }
 

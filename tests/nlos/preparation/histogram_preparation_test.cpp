@@ -109,7 +109,7 @@ TEST(HistogramPreparation, MultiplyingByRangeUndoesTheFalloff) {
     for (float& value : transient.values()) value = 2.0F;
     multiply_by_range(scan, axis, 4.0, transient);
     for (const int bin : {0, 1, 5, 29}) {
-        const double range = 0.5 * (0.55 + 0.1 * bin - 1.0);  // legs of 2 x 0.5 m
+        const double range = 0.5 * (0.55 + 0.1 * bin - 1.0);  // segments of 2 x 0.5 m
         const double expected = range > 0.0 ? 2.0 * std::pow(range, 4.0) : 0.0;
         EXPECT_NEAR(transient.histogram(1)[static_cast<std::size_t>(bin)], expected, 1e-6) << bin;
     }

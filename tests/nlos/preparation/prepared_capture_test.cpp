@@ -83,7 +83,8 @@ TEST(PreparedCapture, ManyLasersAndOneDetectorAreOneLaserAndManyDetectors) {
     EXPECT_EQ(swapped.scan.pattern, ScanPattern::Single);
     EXPECT_EQ(swapped.scan.sensing.size(), 30U);
     for (std::size_t pair = 0; pair < 30; ++pair) {
-        EXPECT_DOUBLE_EQ(swapped.scan.device_legs_m(pair), capture.scan.wall().device_legs_m(pair));
+        EXPECT_DOUBLE_EQ(swapped.scan.device_segments_m(pair),
+                         capture.scan.wall().device_segments_m(pair));
     }
 }
 
@@ -101,7 +102,7 @@ TEST(MidpointConversion, IsExactForPointsEquallyFarFromBoth) {
     for (std::size_t pair = 0; pair < 18; ++pair) {
         const Vec3 p = 0.5 * capture.scan.wall().sensing.positions[pair] + Vec3(0.0, 0.0, 0.5);
         const double opl = p.norm() + (p - capture.scan.wall().sensing.positions[pair]).norm() +
-                           capture.scan.wall().device_legs_m(pair);
+                           capture.scan.wall().device_segments_m(pair);
         capture.transient.histogram(pair)[*capture.time_axis.bin_of(opl)] = 1.0F;
     }
     PreparedCapture confocal = crop_capture(capture, {});

@@ -28,7 +28,7 @@ struct ScatterExample {
             sample.pairs.push_back(i);
             geometry.illumination.emplace_back(x, y, 0.0);
             geometry.sensing.emplace_back(i % 2 == 0 ? x : 0.3 - x, y, 0.0);
-            geometry.legs_m.push_back(0.01 * static_cast<double>(i));
+            geometry.segments_m.push_back(0.01 * static_cast<double>(i));
             for (std::size_t bin = 0; bin < kBins; ++bin) {
                 const bool is_observed = observes_all || i % 3 > 0 || (bin > 3 && bin != 12);
                 sample.observed.push_back(is_observed ? 1.0F : 0.0F);
@@ -61,7 +61,7 @@ TEST(ScatterTransport, PutsACellsLightWhereItsPathsEnd) {
     for (std::size_t pair = 0; pair < example.sample.pairs.size(); ++pair) {
         const double length = (position - example.geometry.illumination[pair]).norm() +
                               (position - example.geometry.sensing[pair]).norm() +
-                              example.geometry.legs_m[pair];
+                              example.geometry.segments_m[pair];
         const double expected = (length - kStart_m) / kWidth_m - 0.5;
         if (expected < 0.0 || expected > static_cast<double>(kBins - 1)) continue;
         double sum = 0.0;

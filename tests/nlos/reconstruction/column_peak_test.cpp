@@ -35,12 +35,12 @@ TEST(ColumnPeak, IsTheCentreOfAGaussian) {
 
 // What a sparse solution makes of light between two voxels: two values whose mean is in its place.
 TEST(ColumnPeak, OfLightSplitBetweenTwoVoxelsIsNearTheirMean) {
-    for (const double share : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9}) {
+    for (const double fraction : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9}) {
         for (const float beside : {0.0F, 1e-6F}) {
             std::vector<float> column(kVoxels, beside);
-            column[kMiddle] = static_cast<float>(1.0 - share);
-            column[kMiddle + 1] = static_cast<float>(share);
-            EXPECT_NEAR(position_of(column), kMiddle + share, 0.04) << share << " " << beside;
+            column[kMiddle] = static_cast<float>(1.0 - fraction);
+            column[kMiddle + 1] = static_cast<float>(fraction);
+            EXPECT_NEAR(position_of(column), kMiddle + fraction, 0.04) << fraction << " " << beside;
         }
     }
 }

@@ -48,20 +48,20 @@ struct FlatSurface {
     }
 };
 
-VolumeErrors shares(double model, double noise, double doubt, double near_by) {
+VolumeErrors fractions(double model, double noise, double doubt, double near_by) {
     return {VolumeScale::Amplitude, model, noise, doubt, near_by, {}};
 }
 
-TEST(DepthSigma, WithoutNoiseIsAShareOfThePeaksWidth) {
+TEST(DepthSigma, WithoutNoiseIsAFractionOfThePeaksWidth) {
     const FlatSurface sure(1.0);
-    for (const double sigma : sure.sigmas(sure.volume, shares(0.1, 0.5, 7.0, 0.4))) {
+    for (const double sigma : sure.sigmas(sure.volume, fractions(0.1, 0.5, 7.0, 0.4))) {
         EXPECT_NEAR(sigma, 0.1 * kPeakWidth * kVoxelStep, 1e-6);  // floats
     }
 }
 
 TEST(DepthSigma, GrowsWithTheOddsAgainstASurface) {
     const FlatSurface doubtful(0.8);  // odds of a quarter
-    for (const double sigma : doubtful.sigmas(doubtful.volume, shares(0.1, 0.5, 7.0, 0.4))) {
+    for (const double sigma : doubtful.sigmas(doubtful.volume, fractions(0.1, 0.5, 7.0, 0.4))) {
         EXPECT_NEAR(sigma, 0.1 * kPeakWidth * kVoxelStep * std::hypot(1.0, 7.0 / 4.0), 1e-6);
     }
 }
@@ -69,7 +69,7 @@ TEST(DepthSigma, GrowsWithTheOddsAgainstASurface) {
 TEST(DepthSigma, OfNoiseIsThatOfHowFarPeaksMove) {
     const FlatSurface sure(1.0);
     const Volume half = gaussian_columns(kFlatVoxel + 0.2);  // the other half is at - 0.2
-    for (const double sigma : sure.sigmas(half, shares(0.0, 0.5, 0.0, 0.0))) {
+    for (const double sigma : sure.sigmas(half, fractions(0.0, 0.5, 0.0, 0.0))) {
         const double mean_size = std::sqrt(2.0 / core::kPi);  // of a deviation of 1
         EXPECT_NEAR(sigma, 0.5 * 0.2 / mean_size * kVoxelStep, 0.03 * 0.1 * kVoxelStep);
     }
@@ -78,17 +78,17 @@ TEST(DepthSigma, OfNoiseIsThatOfHowFarPeaksMove) {
 TEST(DepthSigma, OfAColumnOffItsNeighboursPlaneSaysSo) {
     FlatSurface rough(1.0);
     rough.surface.depth.depth_m[kCenterColumn] += 5.0 * kVoxelStep;
-    const std::vector<double> own = rough.sigmas(rough.volume, shares(0.0, 0.0, 0.0, 0.0));
+    const std::vector<double> own = rough.sigmas(rough.volume, fractions(0.0, 0.0, 0.0, 0.0));
     EXPECT_NEAR(own[kCenterColumn], 0.8 * 5.0 * kVoxelStep, 1e-6);
     EXPECT_LT(own[kCenterColumn + 1], 0.5 * kVoxelStep);  // one of 24 that its plane goes through
-    const std::vector<double> with_near = rough.sigmas(rough.volume, shares(0.0, 0.0, 0.0, 1.0));
+    const std::vector<double> with_near = rough.sigmas(rough.volume, fractions(0.0, 0.0, 0.0, 1.0));
     EXPECT_GT(with_near[kCenterColumn + 1], own[kCenterColumn + 1] + 0.1 * kVoxelStep);
 }
 
 TEST(DepthSigma, OfBackgroundIsNone) {
     FlatSurface holed(1.0);
     holed.surface.depth.depth_m[kCenterColumn] = std::numeric_limits<double>::quiet_NaN();
-    const std::vector<double> sigmas = holed.sigmas(holed.volume, shares(0.1, 0.5, 7.0, 0.4));
+    const std::vector<double> sigmas = holed.sigmas(holed.volume, fractions(0.1, 0.5, 7.0, 0.4));
     for (std::size_t i = 0; i < sigmas.size(); ++i) {
         EXPECT_EQ(std::isnan(sigmas[i]), i == kCenterColumn) << i;
     }

@@ -61,7 +61,7 @@ TEST(PlateauProbabilities, KeepDimSurfacesBesideBrightOnes) {
     EXPECT_LT(strict[144 + 5 * 12 + 5], 0.2);
 }
 
-TEST(PlateauProbabilities, CrossOneHalfAtTheShareOfAllSurfaces) {
+TEST(PlateauProbabilities, CrossOneHalfAtTheFractionOfAllSurfaces) {
     std::vector<double> peaks(100, 2.0);
     peaks.insert(peaks.end(), {0.0, 0.0, 0.4, 0.0, 0.0});
     std::vector<double> weights(peaks.size(), 1.0);

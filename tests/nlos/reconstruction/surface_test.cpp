@@ -86,7 +86,7 @@ TEST(Surface, OfNoiseAloneIsHardlyAny) {
     EXPECT_LE(surface_points(surface.depth).positions.size(), 16U);  // 1 %
 }
 
-TEST(Surface, StatedDeviationsOfDepthAreThoseOfTheErrors) {
+TEST(Surface, ReportedDeviationsOfDepthAreThoseOfTheErrors) {
     const NoisyVolumes noisy(25.0);
     const Surface surface = find_surface(noisy.volume, &noisy.again, {}, 0.5);
     double squares = 0.0;

@@ -23,8 +23,8 @@ core::Capture capture_of_plate(std::size_t columns) {
         nlos_test::wall_grid({columns, columns}, {pitch_m, pitch_m}), {0.8, 0.016, 64});
     for (int ix = -18; ix < 18; ++ix) {
         for (int iy = -18; iy < 18; ++iy) {
-            const Vec3 place((ix + 0.5) * kPointPitch_m, (iy + 0.5) * kPointPitch_m, 0.5);
-            nlos_test::add_scatterer(capture, place, 4.0);
+            const Vec3 position((ix + 0.5) * kPointPitch_m, (iy + 0.5) * kPointPitch_m, 0.5);
+            nlos_test::add_scatterer(capture, position, 4.0);
         }
     }
     const double light = kPlateAlbedo * std::pow(kPointPitch_m, 2) / std::pow(core::kPi, 3);

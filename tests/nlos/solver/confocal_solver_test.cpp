@@ -103,7 +103,7 @@ double unevenness(const Reconstruction& result) {
 }
 
 // No point has a neighbour that tells noise, and few points pull weakly: the weights of the priors
-// and the tolerance follow their share. Depths are within a voxel.
+// and the tolerance follow their fraction. Depths are within a voxel.
 TEST(ConfocalSolver, FindsThePlateFromOnePointInSixteen) {
     core::Capture capture = plate_capture();
     std::vector<core::BinRange> observed;

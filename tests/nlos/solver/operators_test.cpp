@@ -203,7 +203,7 @@ TEST(ConeConvolution, SolvesItsSystem) {
 
 /// How far K f of the footprint is from the light that solve() returns, relative to that: what
 /// scatterers elsewhere add.
-double share_from_elsewhere(bool is_confined) {
+double fraction_from_elsewhere(bool is_confined) {
     const ConeExample example;
     ConeConvolution convolution(example.cone, *example.wall.grid, 0.0, 0.7, 3.0, is_confined);
     const std::vector<float> c = signed_values(convolution.num_values(), 6);
@@ -226,7 +226,7 @@ double share_from_elsewhere(bool is_confined) {
 // Of random light they explain three quarters, unless kept out. What is left then lies before and
 // behind the volume in the footprint's own columns.
 TEST(ConeConvolution, KeepsScatterersBesideTheFootprintOutOnDemand) {
-    EXPECT_LT(share_from_elsewhere(true), 0.4 * share_from_elsewhere(false));
+    EXPECT_LT(fraction_from_elsewhere(true), 0.4 * fraction_from_elsewhere(false));
 }
 
 TEST(Proximal, PoissonMinimisesItsFunction) {

@@ -71,10 +71,11 @@ TEST(PairOperator, AdjointIsExactForEveryPatternWithGapsAndResponse) {
                      rising_values(capture.scan.num_pairs()));
         light.set_gains(gains);
         std::vector<Eigen::Vector3f> voxels;
-        const std::vector<float> places = signed_values(3000, 9);
+        const std::vector<float> coordinates = signed_values(3000, 9);
         for (std::size_t i = 0; i < 1000; ++i) {
-            voxels.emplace_back(
-                0.6F * places[3 * i], 0.6F * places[3 * i + 1], 0.6F + 0.4F * places[3 * i + 2]);
+            voxels.emplace_back(0.6F * coordinates[3 * i],
+                                0.6F * coordinates[3 * i + 1],
+                                0.6F + 0.4F * coordinates[3 * i + 2]);
         }
         light.set_voxels(voxels);
         std::vector<std::size_t> pairs(capture.scan.num_pairs());
@@ -108,8 +109,8 @@ TEST(PairOperator, ShowsAPointAsTheClosedFormDoes) {
         PairOperator light(input, falloff, 0.0);
         const core::Transform to_wall = wall.world_from_wall.inverse(Eigen::Isometry);
         light.set_voxels({(to_wall * point).cast<float>()});
-        const auto depth_from = [&](const core::Vec3& place) {
-            return (to_wall * point).z() - (to_wall * place).z();
+        const auto depth_from = [&](const core::Vec3& position) {
+            return (to_wall * point).z() - (to_wall * position).z();
         };
         std::vector<std::size_t> pairs(40);
         std::iota(pairs.begin(), pairs.end(), std::size_t{0});

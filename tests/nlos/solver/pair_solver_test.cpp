@@ -85,27 +85,27 @@ TEST(PairSolver, FindsAPlateBeforeAnUnevenWall) {
     }
 }
 
-/// The share of all albedo that is on the plate.
-double share_on_plate(const Reconstruction& result) {
+/// The fraction of all albedo that is on the plate.
+double fraction_on_plate(const Reconstruction& result) {
     double plate = 0.0;
     double all = 0.0;
     const VolumeAxes& axes = result.volume.axes;
     for (std::size_t i = 0; i < result.volume.values.size(); ++i) {
-        const core::Vec3 place =
+        const core::Vec3 position =
             axes.world_from_wall *
             core::Vec3(axes.x_m[i / (25 * 64)], axes.y_m[i / 64 % 25], axes.z_m[i % 64]);
         const double value = static_cast<double>(result.volume.values[i]);
         EXPECT_GE(value, 0.0);
         all += value;
-        const bool is_plate = std::abs(place.x()) < 0.2 && std::abs(place.y()) < 0.2 &&
-                              std::abs(place.z() - 0.5) < 0.02;
+        const bool is_plate = std::abs(position.x()) < 0.2 && std::abs(position.y()) < 0.2 &&
+                              std::abs(position.z() - 0.5) < 0.02;
         if (is_plate) plate += value;
     }
     return plate / all;
 }
 
 TEST(PairSolver, LeavesNothingBesideThePlate) {
-    EXPECT_GT(share_on_plate(solve_plate(plate_before_uneven_wall(20.0))), 0.95);
+    EXPECT_GT(fraction_on_plate(solve_plate(plate_before_uneven_wall(20.0))), 0.95);
 }
 
 // A wall whose reflectance varies sixteenfold from left to right.
@@ -116,8 +116,8 @@ TEST(PairSolver, FindsTheGainsOfPointsWithTheScene) {
         const auto gain = static_cast<float>(std::exp2(5.0 * (x - 0.4)));
         for (float& value : capture.transient.histogram(pair)) value = std::round(gain * value);
     }
-    const double beside = 1.0 - share_on_plate(solve_plate(capture, {"solver.gains=true"}));
-    EXPECT_LT(beside, 0.75 * (1.0 - share_on_plate(solve_plate(capture))));
+    const double beside = 1.0 - fraction_on_plate(solve_plate(capture, {"solver.gains=true"}));
+    EXPECT_LT(beside, 0.75 * (1.0 - fraction_on_plate(solve_plate(capture))));
 }
 
 // As much background in every bin as a tenth of the brightest one's light.
@@ -129,7 +129,7 @@ TEST(PairSolver, ExplainsBackgroundAsBackground) {
         value += static_cast<float>(background(generator));
     }
     const Reconstruction result = solve_plate(capture, {"noise_floor=10"});
-    EXPECT_GT(share_on_plate(result), 0.85);
+    EXPECT_GT(fraction_on_plate(result), 0.85);
     EXPECT_LT(depth_error(result), 0.003);
 }
 

@@ -94,9 +94,10 @@ double pair_operator_error(Falloff falloff, const core::WallScan& scan) {
     constexpr int kSteps = 30;
     std::vector<Eigen::Vector3f> voxels;
     for (int i = 0; i < kSteps * kSteps; ++i) {
-        const Vec3 place((i / kSteps + 0.5) / kSteps - 0.5, (i % kSteps + 0.5) / kSteps - 0.5, 0.0);
+        const Vec3 position(
+            (i / kSteps + 0.5) / kSteps - 0.5, (i % kSteps + 0.5) / kSteps - 0.5, 0.0);
         const Vec3 in_wall_frame =
-            wall.world_from_wall.inverse(Eigen::Isometry) * Vec3(kCenter + side * place);
+            wall.world_from_wall.inverse(Eigen::Isometry) * Vec3(kCenter + side * position);
         voxels.push_back(in_wall_frame.cast<float>());
     }
     light.set_voxels(voxels);

@@ -8,7 +8,7 @@ namespace {
 
 const std::vector<std::string> kKnown{"render", "reconstruct", "report", "compare", "bp", "fbp"};
 
-TEST(NearestName, IsFoundThroughSlipsOfTheFingers) {
+TEST(NearestName, IsFoundThroughTypingErrors) {
     EXPECT_EQ(nearest_name("recontsruct", kKnown), "reconstruct");
     EXPECT_EQ(nearest_name("Render", kKnown), "render");
     EXPECT_EQ(nearest_name("rendr", kKnown), "render");

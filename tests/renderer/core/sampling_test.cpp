@@ -101,7 +101,7 @@ TEST(DiscreteDistribution, PicksInProportionToWeights) {
     EXPECT_EQ(observed[4], 0.0);
 }
 
-TEST(DiscreteDistribution, InverseAndSharesAgreeWithSample) {
+TEST(DiscreteDistribution, InverseAndIntervalsAgreeWithSample) {
     core::Rng rng(test_support::seed_of("DiscreteDistribution.inverse"), 0, 0);
     std::vector<double> weights;
     for (int i = 0; i < 1000; ++i) weights.push_back(rng.uniform());
@@ -110,14 +110,14 @@ TEST(DiscreteDistribution, InverseAndSharesAgreeWithSample) {
         std::size_t hint = 0;
         for (std::size_t i = 0; i < count; ++i) {
             const double u = (static_cast<double>(i) + rng.uniform()) / static_cast<double>(count);
-            const auto share = distribution.share_from(hint, u);
-            hint = share.index;
-            EXPECT_LE(share.begin, u);
-            EXPECT_LT(u, share.end);
+            const auto interval = distribution.interval_from(hint, u);
+            hint = interval.index;
+            EXPECT_LE(interval.begin, u);
+            EXPECT_LT(u, interval.end);
             double remapped = 0.0;
-            EXPECT_EQ(share.index, distribution.sample(u, remapped));
-            EXPECT_EQ(share.remap(u), remapped);
-            EXPECT_NEAR(share.begin + remapped * (share.end - share.begin), u, 1e-12);
+            EXPECT_EQ(interval.index, distribution.sample(u, remapped));
+            EXPECT_EQ(interval.remap(u), remapped);
+            EXPECT_NEAR(interval.begin + remapped * (interval.end - interval.begin), u, 1e-12);
         }
     }
 }

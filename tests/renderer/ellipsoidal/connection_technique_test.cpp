@@ -43,7 +43,7 @@ Scene room_with_ball() {
         std::move(geometry), test_support::confocal_scan({Vec3(9, 9, 0)}), renderer::RelayWall{}};
 }
 
-// How far draws are from following what facets carry, visibility aside: E[(carried / pdf)^2] /
+// How far draws are from following what facets carry, visibility ignored: E[(carried / pdf)^2] /
 // E[carried / pdf]^2, 1 for perfect ones; 0 where the ellipsoid meets nothing that carries.
 // `draw` gets rising numbers in [0, 1).
 template <class Draw>

@@ -135,7 +135,7 @@ TEST(EllipsoidalTracer, GatesOfAllShapesAgreeWithPaths) {
     }
 }
 
-// Eight samples come one by one: then, too, every kind of them has its share in the mean.
+// Eight samples come one by one: then, too, every kind of them has its part in the mean.
 TEST(EllipsoidalTracer, FewSamplesHaveNoBias) {
     FewPairs few("letter");
     few.scan = renderer::make_scan(few.description).wall();

@@ -114,14 +114,14 @@ TEST(ExcludedFacets, TakeDrawsFromCurvedRelayWallsAlone) {
         const renderer::ConnectionTechnique technique(
             scene, renderer::ExcludedFacets::of(scene, axis, settings), scan);
         const Vec3 spot = scan.sensing.positions[0];
-        double share = 0.0;
+        double fraction = 0.0;
         for (std::uint32_t f = 0; f < scene.facets().size(); ++f) {
             if (scene.object_of(f).role != renderer::Role::RelayWall) continue;
-            share += technique.hierarchy()
-                         .evaluate({{spot, spot}, normal, normal}, {0.1, 4.1}, f)
-                         .probability;
+            fraction += technique.hierarchy()
+                            .evaluate({{spot, spot}, normal, normal}, {0.1, 4.1}, f)
+                            .probability;
         }
-        EXPECT_TRUE(curved ? share > 0.1 : share < 1e-3) << share;
+        EXPECT_TRUE(curved ? fraction > 0.1 : fraction < 1e-3) << fraction;
     }
 }
 

@@ -51,19 +51,19 @@ TEST(PixelPositionSampler, SamplesFollowTheDensity) {
         const int points = kCells * kPointsPerCell;
         for (int i = 0; i < points; ++i) {
             for (int j = 0; j < points; ++j) {
-                const Vec2 place((i + 0.5) / points, (j + 0.5) / points);
+                const Vec2 position((i + 0.5) / points, (j + 0.5) / points);
                 expected[static_cast<std::size_t>(i / kPointsPerCell * kCells +
                                                   j / kPointsPerCell)] +=
-                    band.pdf(place) * kSamples / (1.0 * points * points);
+                    band.pdf(position) * kSamples / (1.0 * points * points);
             }
         }
         std::vector<double> observed(kCells * kCells);
         for (int i = 0; i < kSamples; ++i) {
             const double u1 = (i + rng.uniform()) / kSamples;
-            const Vec2 place = band.sample({u1, rng.uniform()});
-            ASSERT_GE(place.minCoeff(), 0.0);
-            ASSERT_LE(place.maxCoeff(), 1.0);
-            const Vec2 cell = (place * kCells).cwiseMin(kCells - 1);
+            const Vec2 position = band.sample({u1, rng.uniform()});
+            ASSERT_GE(position.minCoeff(), 0.0);
+            ASSERT_LE(position.maxCoeff(), 1.0);
+            const Vec2 cell = (position * kCells).cwiseMin(kCells - 1);
             ++observed[static_cast<std::size_t>(static_cast<int>(cell.x()) * kCells +
                                                 static_cast<int>(cell.y()))];
         }
@@ -73,13 +73,13 @@ TEST(PixelPositionSampler, SamplesFollowTheDensity) {
     }
 }
 
-TEST(PixelPositionSampler, HalfOfThePlacesHaveWantedLengths) {
+TEST(PixelPositionSampler, HalfOfThePositionsHaveWantedLengths) {
     const PixelPositionSampler::Band band = band_of({{0.01, 0.004}, {1.002, 1.003}});
     core::Rng rng(test_support::seed_of("HalfOfThePlaces"), 0, 0);
     int wanted = 0;
     for (int i = 0; i < 1000; ++i) {
-        const Vec2 place = band.sample({(i + 0.5) / 1000, rng.uniform()});
-        const double opl_m = 1.0 + 0.01 * place.x() + 0.004 * place.y();
+        const Vec2 position = band.sample({(i + 0.5) / 1000, rng.uniform()});
+        const double opl_m = 1.0 + 0.01 * position.x() + 0.004 * position.y();
         if (opl_m >= 1.002 && opl_m <= 1.003) ++wanted;
     }
     EXPECT_GT(wanted, 500);  // and a few of the others
@@ -101,26 +101,26 @@ TEST(PixelPositionSampler, FindsShortGatesOnGrazingFloorsAndInCorners) {
     const core::Scan scan = test_support::image_of(camera);
     const renderer::Scene scene({room, {}}, scan, {});
     const renderer::SensorPairs measurement(scene, scan);
-    const PixelPositionSampler places(measurement, camera);
-    constexpr int kPlaces = 20'000;
+    const PixelPositionSampler sampler(measurement, camera);
+    constexpr int kPositions = 20'000;
     for (const double gate_m : {3.2, 5.37}) {
         int pixels_that_reach = 0;
         const renderer::OplBand wanted{gate_m, gate_m + 4e-3};
         for (std::size_t pixel = 0; pixel < camera.num_pixels(); ++pixel) {
-            const PixelPositionSampler::Band band = places.band(pixel, wanted);
+            const PixelPositionSampler::Band band = sampler.band(pixel, wanted);
             core::Rng rng(test_support::seed_of("FindsShortGates"), pixel, 0);
-            const auto is_wanted = [&](const Vec2& place) {
-                const auto seen = measurement.first_vertex(pixel, place);
-                const double opl_m =
-                    seen ? seen->extent.opl_m + (*camera.light_m - seen->point.position).norm()
-                         : 0.0;
+            const auto is_wanted = [&](const Vec2& position) {
+                const auto seen = measurement.first_vertex(pixel, position);
+                const double opl_m = seen ? seen->optical_path.opl_m +
+                                                (*camera.light_m - seen->point.position).norm()
+                                          : 0.0;
                 return opl_m >= wanted.low_m && opl_m < wanted.high_m;
             };
             int reached = 0;  // by places drawn uniformly
             int foreseen = 0;
-            double share = 0.0;  // by places drawn from the band
+            double fraction = 0.0;  // by places drawn from the band
             double squares = 0.0;
-            for (int i = 0; i < kPlaces; ++i) {
+            for (int i = 0; i < kPositions; ++i) {
                 const Vec2 anywhere(rng.uniform(), rng.uniform());
                 if (is_wanted(anywhere)) {
                     ++reached;
@@ -128,16 +128,18 @@ TEST(PixelPositionSampler, FindsShortGatesOnGrazingFloorsAndInCorners) {
                 }
                 const Vec2 drawn = band.sample({rng.uniform(), rng.uniform()});
                 if (is_wanted(drawn)) {
-                    share += 1.0 / (kPlaces * band.pdf(drawn));
-                    squares += std::pow(band.pdf(drawn) * kPlaces, -2);
+                    fraction += 1.0 / (kPositions * band.pdf(drawn));
+                    squares += std::pow(band.pdf(drawn) * kPositions, -2);
                 }
             }
             if (reached < 50) continue;
             ++pixels_that_reach;
             EXPECT_GE(foreseen, 0.95 * reached) << pixel << ", " << gate_m;
             // Five standard deviations of either estimate.
-            const double sigma = std::sqrt(reached + squares * kPlaces * kPlaces) / kPlaces;
-            EXPECT_NEAR(share, reached / double{kPlaces}, 5.0 * sigma) << pixel << ", " << gate_m;
+            const double sigma =
+                std::sqrt(reached + squares * kPositions * kPositions) / kPositions;
+            EXPECT_NEAR(fraction, reached / double{kPositions}, 5.0 * sigma)
+                << pixel << ", " << gate_m;
         }
         EXPECT_GT(pixels_that_reach, 5) << gate_m;
     }

@@ -96,7 +96,7 @@ TEST(ScanSmoothing, PointsOfAListHaveNoNeighbours) {
     EXPECT_GT(squared_distance(renderer::smooth_scan(values, scan, {1, 2}), values), 0.0);
 }
 
-// Over 20 draws of noise: widths are chosen that lower the error, and the error that is stated is
+// Over 20 draws of noise: widths are chosen that lower the error, and the error that is reported is
 // the true one, or above it where one deviation of the bias is most of what is left.
 TEST(ScanSmoothing, ChoosesWidthsByTheTrueError) {
     constexpr std::size_t kSide = 16;
@@ -110,7 +110,7 @@ TEST(ScanSmoothing, ChoosesWidthsByTheTrueError) {
     for (const auto& [width, noise, gain] :
          {Case{0.3, 0.02, 1.0}, Case{2.0, 0.2, 10.0}, Case{8.0, 0.2, 50.0}}) {
         const core::Transient truth = ridge(kSide, kBins, width);
-        double stated = 0.0;
+        double reported = 0.0;
         double found = 0.0;
         double signal = 0.0;
         constexpr int kDraws = 20;
@@ -121,14 +121,14 @@ TEST(ScanSmoothing, ChoosesWidthsByTheTrueError) {
                                                         nullptr);
             EXPECT_EQ(smoothed.widths.points > 1, width > 1.0);
             EXPECT_EQ(smoothed.widths.bins > 1, width > 1.0);
-            stated += smoothed.squared_error / kDraws;
+            reported += smoothed.squared_error / kDraws;
             found += squared_distance(smoothed.mean, truth) / kDraws;
             signal += smoothed.squared_signal / kDraws;
         }
         const double unsmoothed = 0.5 * noise * noise * static_cast<double>(truth.values().size());
         EXPECT_LE(gain * found, 1.02 * unsmoothed) << width;
-        EXPECT_LE(found, 1.02 * stated) << width;
-        EXPECT_GE(found, 0.5 * stated) << width;
+        EXPECT_LE(found, 1.02 * reported) << width;
+        EXPECT_GE(found, 0.5 * reported) << width;
         const core::Transient dark(kSide * kSide, kBins);
         EXPECT_NEAR(signal, squared_distance(truth, dark), 0.05 * signal) << width;
     }

@@ -21,7 +21,7 @@ struct Configuration {
     renderer::OplBand lengths;
 };
 
-/// The interval between two shares of the facet's band.
+/// The interval between two fractions of the facet's band.
 inline renderer::OplBand part_of_band(const renderer::FocusPair& foci,
                                       const renderer::Facet& facet,
                                       double from,

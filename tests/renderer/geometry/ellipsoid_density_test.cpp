@@ -53,7 +53,7 @@ struct Integrals {
 
 // By random points. Near a corner that the ellipsoid reaches first the density grows as one over
 // the distance r, so points are drawn with density 1/r about each corner: on the line across the
-// triangle at the share t of the way from corner k, t uniform, which has the area density 1/(2 A
+// triangle at the fraction t of the way from corner k, t uniform, which has the area density 1/(2 A
 // t).
 Integrals integrate(const Configuration& c, int points_per_side, core::Rng& rng) {
     Integrals integrals;

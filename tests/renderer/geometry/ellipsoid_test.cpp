@@ -25,7 +25,7 @@ using ellipsoid_test::facet_of;
 using renderer::Facet;
 using renderer::FocusPair;
 
-TEST(EllipsoidalConnection, LegsHaveExactlyTheRequestedLength) {
+TEST(EllipsoidalConnection, SegmentsHaveExactlyTheRequestedLength) {
     core::Rng rng(test_support::seed_of("LegsHaveExactly"), 0, 0);
     int drawn = 0;
     for (const Configuration& c : configurations("LegsHaveExactly")) {
@@ -88,7 +88,8 @@ TEST(EllipsoidalConnection, InverseReturnsTheRandomNumber) {
                 test_support::invert_ellipsoid(c.foci, c.facet, draw->connection.position);
             if (!u) continue;  // a length at the end of the band, rounded
             ++inverted;
-            // u is a share of the arcs: where these are short, rounding of x is a larger share.
+            // u is a fraction of the arcs: where these are short, rounding of x is a larger
+            // fraction.
             EXPECT_NEAR(*u, draw->u, c.name == "random" ? 1e-6 : 1e-3) << c.name;
         }
     }

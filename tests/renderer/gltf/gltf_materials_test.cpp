@@ -116,7 +116,7 @@ TEST(Gltf, TexturesThatCannotBeUsedAreRefused) {
     file.json["images"][0]["uri"] = "data:image/png;base64,AAAA";
     EXPECT_NE(error_of(file).find("images[0]: cannot be decoded"), std::string::npos);
 
-    // The size that a PNG or a JPEG file states is enough to tell.
+    // The size that a PNG or a JPEG file gives is enough to tell.
     for (const char* large :
          {"iVBORw0KGgoAAAANSUhEUgABAAAAAQAACAIAAAA=", "/9j/4AAEAAD/wAARCP////8DASIAAhEBAxEB"}) {
         file = textured_file();

@@ -43,9 +43,9 @@ double sampler_p_value(const Bsdf& bsdf, const Vec3& incoming) {
         const auto out = renderer::sample_bsdf(bsdf, incoming, {u1, rng.uniform()});
         std::size_t cell = kRows * kColumns;
         if (out) {
-            const double share = std::atan2(out->y(), out->x()) / (2.0 * core::kPi) + 0.5;
+            const double fraction = std::atan2(out->y(), out->x()) / (2.0 * core::kPi) + 0.5;
             const int row = std::min(kRows - 1, static_cast<int>(std::abs(out->z()) * kRows));
-            const int column = std::min(kColumns - 1, static_cast<int>(share * kColumns));
+            const int column = std::min(kColumns - 1, static_cast<int>(fraction * kColumns));
             cell = static_cast<std::size_t>(row * kColumns + column);
         }
         observed[cell] += 1.0;
@@ -58,10 +58,11 @@ double sampler_p_value(const Bsdf& bsdf, const Vec3& incoming) {
             const double azimuth = 2.0 * core::kPi * ((j + 0.5) / (kColumns * kFine) - 0.5);
             Vec3 out = direction_at(cosine, azimuth);
             out.z() *= side;
-            const double share = renderer::pdf_bsdf(bsdf, incoming, out) * 2.0 * core::kPi /
-                                 (kRows * kFine * kColumns * kFine);
-            expected[static_cast<std::size_t>(i / kFine * kColumns + j / kFine)] += kDraws * share;
-            total += share;
+            const double fraction = renderer::pdf_bsdf(bsdf, incoming, out) * 2.0 * core::kPi /
+                                    (kRows * kFine * kColumns * kFine);
+            expected[static_cast<std::size_t>(i / kFine * kColumns + j / kFine)] +=
+                kDraws * fraction;
+            total += fraction;
         }
     }
     expected.back() = std::max(0.0, 1.0 - total) * kDraws;

@@ -189,9 +189,9 @@ const std::string kFacet =
     "vertex 2 1 0\nendloop\nendfacet\n";
 const std::string kStl = "solid roof\n" + kFacet + "endsolid roof\n";
 
-std::string binary_stl(std::uint32_t stated, std::size_t written, float x = 2.0F) {
+std::string binary_stl(std::uint32_t declared, std::size_t written, float x = 2.0F) {
     std::string bytes(80, ' ');
-    append_bytes(bytes, stated);
+    append_bytes(bytes, declared);
     for (std::size_t i = 0; i < written; ++i) {
         const float values[12]{0, 0, 1, 0, 0, 0, x, 0, 0, 2, 1, 0};
         bytes.append(reinterpret_cast<const char*>(values), sizeof(values));

@@ -210,9 +210,9 @@ void expect_one_line(const std::string& path) {
 TEST(MeshFile, FilesCutShortAreReadInPartOrRefusedInOneLine) {
     for (const auto& [name, bytes] : examples()) {
         const TemporaryFolder folder;
-        constexpr std::size_t kPlaces = 50;
-        for (std::size_t i = 0; i < kPlaces; ++i) {
-            write_file_bytes(folder.file(name), bytes.substr(0, i * bytes.size() / kPlaces));
+        constexpr std::size_t kPositions = 50;
+        for (std::size_t i = 0; i < kPositions; ++i) {
+            write_file_bytes(folder.file(name), bytes.substr(0, i * bytes.size() / kPositions));
             expect_one_line(folder.file(name));
         }
     }

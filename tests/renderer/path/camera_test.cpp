@@ -207,7 +207,7 @@ TEST(Camera, FurnaceShowsTheSameRadianceInEveryPixel) {
 }
 
 // Radiance that leaves a wall point does not depend on who looks: a pixel that sees it and a scan
-// measure the same, the length of the camera's leg apart.
+// measure the same, the length of the camera's segment apart.
 TEST(Camera, AgreesWithAScanOfTheSamePoints) {
     const Vec3 lit(0.1, 0.05, 0.0);
     const Vec3 seen(-0.2, 0.1, 0.0);

@@ -168,7 +168,7 @@ FirstVertexBatch evaluated_batch(const renderer::Scene& scene,
     return vertices;
 }
 
-void expect_share(double found, double probability, int num_draws) {
+void expect_fraction(double found, double probability, int num_draws) {
     const double sigma = std::sqrt(probability * (1.0 - probability) / num_draws);
     EXPECT_LT(std::abs(found / num_draws - probability), 5.0 * sigma + 1e-12);
 }
@@ -194,7 +194,7 @@ TEST_F(FirstVertexDraws, ThinningKeepsTheMeanOfEveryContribution) {
     }
     int large = 0;
     for (std::size_t i = 0; i < times.size(); ++i) {
-        expect_share(times[i], std::min(1.0, before[i] / step), kDraws);
+        expect_fraction(times[i], std::min(1.0, before[i] / step), kDraws);
         large += before[i] >= step ? 1 : 0;
     }
     EXPECT_GT(large, 0);
@@ -213,7 +213,7 @@ TEST_F(FirstVertexDraws, ByThroughputAreWeighedByTheirProbability) {
         }
     }
     for (std::size_t i = 0; i < times.size(); ++i) {
-        if (times[i] > 0.0) expect_share(times[i], 1.0 / scales[i], kDraws);
+        if (times[i] > 0.0) expect_fraction(times[i], 1.0 / scales[i], kDraws);
     }
     const auto carrying = all.draw_by_throughput(1.0, rng);
     for (const auto& drawn : carrying) EXPECT_EQ(drawn.scale, 1.0);
@@ -227,7 +227,7 @@ TEST_F(FirstVertexDraws, OtherLengthsAreLeftOut) {
     FirstVertexBatch vertices = evaluated_batch(scene_, traits_, rng);
     const std::vector<double> before(vertices.contributions().begin(),
                                      vertices.contributions().end());
-    const double share = vertices.leave_out_other_lengths({0.3, 0.3});
+    const double fraction = vertices.leave_out_other_lengths({0.3, 0.3});
     double inside = 0.0;
     for (std::size_t i = 0; i < before.size(); ++i) {
         const bool counts = vertices.opl_m()[i] >= 0.3 && vertices.opl_m()[i] < 0.6;
@@ -235,7 +235,7 @@ TEST_F(FirstVertexDraws, OtherLengthsAreLeftOut) {
         if (counts) inside += before[i];
     }
     EXPECT_GT(inside, 0.0);
-    EXPECT_NEAR(share, inside / test_support::sum_of(before), 1e-12);
+    EXPECT_NEAR(fraction, inside / test_support::sum_of(before), 1e-12);
     EXPECT_EQ(vertices.leave_out_other_lengths({7.0, 1.0}), 0.0);
 }
 

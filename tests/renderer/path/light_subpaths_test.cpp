@@ -61,7 +61,7 @@ struct RoomWalks {
     renderer::Scene scene;
     renderer::SensorPairs pairs;
     renderer::PathEndpoints ends;
-    renderer::SurfaceWalk walk;
+    renderer::RandomWalk walk;
 };
 
 // sigma   of what is expected
@@ -82,20 +82,20 @@ std::vector<core::PinholeCamera> cameras_with_both_lights() {
     return {room_camera(), spot};
 }
 
-TEST(SensorPairs, ManyFirstVerticesAreThoseOfSinglePlaces) {
+TEST(SensorPairs, ManyFirstVerticesAreThoseOfSinglePositions) {
     const RoomWalks room(room_camera());
-    const std::vector<core::Vec2> places{{0.1, 0.9}, {0.5, 0.5}, {0.7, 0.2}};
+    const std::vector<core::Vec2> positions{{0.1, 0.9}, {0.5, 0.5}, {0.7, 0.2}};
     for (std::size_t pixel = 0; pixel < room.pairs.num_pairs(); ++pixel) {
         std::vector<renderer::PathVertex> found;
-        room.pairs.find_first_vertices(pixel, places, found);
-        ASSERT_EQ(found.size(), places.size());
-        for (std::size_t i = 0; i < places.size(); ++i) {
-            const auto expected = room.pairs.first_vertex(pixel, places[i]);
+        room.pairs.find_first_vertices(pixel, positions, found);
+        ASSERT_EQ(found.size(), positions.size());
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            const auto expected = room.pairs.first_vertex(pixel, positions[i]);
             ASSERT_TRUE(expected);
             EXPECT_EQ(found[i].point.facet, expected->point.facet);
             EXPECT_LT((found[i].point.position - expected->point.position).norm(), 1e-12);
             EXPECT_LT((found[i].to_previous - expected->to_previous).norm(), 1e-15);
-            EXPECT_DOUBLE_EQ(found[i].extent.opl_m, expected->extent.opl_m);
+            EXPECT_DOUBLE_EQ(found[i].optical_path.opl_m, expected->optical_path.opl_m);
             EXPECT_EQ(found[i].throughput, expected->throughput);
             EXPECT_EQ(found[i].order, expected->order);
         }
@@ -132,9 +132,9 @@ TEST(LightSubpaths, RatiosOfDensitiesIntegrateToTheArea) {
     }
 }
 
-// The other way round: the mean of the ratio is the share of walks from the light that come to so
-// many vertices, the last of which the first vertex of the pixel sees.
-TEST(SubpathDensity, RatiosIntegrateToTheShareOfSubpaths) {
+// The other way round: the mean of the ratio is the fraction of walks from the light that come to
+// so many vertices, the last of which the first vertex of the pixel sees.
+TEST(SubpathDensity, RatiosIntegrateToTheFractionOfSubpaths) {
     constexpr int kWalks = 200'000;
     for (const core::PinholeCamera& camera : cameras_with_both_lights()) {
         const RoomWalks room(camera);
@@ -160,15 +160,17 @@ TEST(SubpathDensity, RatiosIntegrateToTheShareOfSubpaths) {
                                      kWalks,
                                      3,
                                      {test_support::seed_of("SubpathDensity"), kWalks, 0});
-        std::vector<double> shares(3);
+        std::vector<double> fractions(3);
         for (std::size_t v = 0; v < subpaths.begin(kWalks); ++v) {
             const Vec3 offset = subpaths.vertex(v).point.position - first->point.position;
             const bool is_seen = std::abs(first->normal.dot(offset)) > 1e-9;
-            shares[static_cast<std::size_t>(subpaths.depth(v) - 1)] += is_seen ? 1.0 / kWalks : 0.0;
+            fractions[static_cast<std::size_t>(subpaths.depth(v) - 1)] +=
+                is_seen ? 1.0 / kWalks : 0.0;
         }
-        for (std::size_t i = 0; i < shares.size(); ++i) {
+        for (std::size_t i = 0; i < fractions.size(); ++i) {
             SCOPED_TRACE(i);
-            expect_mean(ratios[i], shares[i], std::sqrt(shares[i] * (1.0 - shares[i]) / kWalks));
+            expect_mean(
+                ratios[i], fractions[i], std::sqrt(fractions[i] * (1.0 - fractions[i]) / kWalks));
         }
     }
 }
@@ -259,8 +261,8 @@ test_support::Numbers walked(const Furnished& room,
         histogram.drain(
             [&](std::size_t begin, std::span<const double> values) {
                 for (std::size_t i = 0; i < values.size(); ++i) {
-                    const std::size_t place = begin + i;
-                    capture.by_order[place / bins].histogram(pair)[place % bins] +=
+                    const std::size_t index = begin + i;
+                    capture.by_order[index / bins].histogram(pair)[index % bins] +=
                         static_cast<float>(values[i]);
                 }
             },

@@ -75,14 +75,14 @@ TEST(PathTracer, RotatedAndTranslatedSetUpGivesTheSameTransient) {
     EXPECT_LT(test_support::relative_l2(posed.transient.values(), plain.transient.values()), 1e-5);
 }
 
-TEST(PathTracer, DeviceOriginShiftsHistogramsByTheLegs) {
+TEST(PathTracer, DeviceOriginShiftsHistogramsByTheSegments) {
     core::WallScan scan = test_support::single_scan(Vec3(0.1, 0.2, 0.0), {kThreeWallPoints[0]});
     const auto wall_origin = render_plain(scan, kInvarianceAxis, settings_with(2000));
     scan.opl_origin = core::OplOrigin::Device;
     scan.laser_position = Vec3(-0.5, 0.1, 0.25);
     scan.detector_position = Vec3(0.4, 0.0, 0.3);
     core::TimeAxis shifted = kInvarianceAxis;
-    shifted.opl_start_m += scan.device_legs_m(0);
+    shifted.opl_start_m += scan.device_segments_m(0);
     const auto device_origin = render_plain(scan, shifted, settings_with(2000));
     EXPECT_LT(
         test_support::relative_l2(device_origin.transient.values(), wall_origin.transient.values()),
@@ -150,8 +150,9 @@ TEST(PathTracer, TilesGiveTheSameBitsAsTheWholeScan) {
                  core::Failure);
 }
 
-// The direct return: radiance of the lit spot itself, after the device legs, confocal pairs only.
-TEST(PathTracer, DirectReturnIsTheLitSpotAfterTheDeviceLegs) {
+// The direct return: radiance of the lit spot itself, after the device segments, confocal pairs
+// only.
+TEST(PathTracer, DirectReturnIsTheLitSpotAfterTheDeviceSegments) {
     renderer::RenderSettings settings = settings_with(16);
     settings.by_order = true;
     settings.direct_return = true;
@@ -188,7 +189,7 @@ TEST(PathTracer, SwappingLightAndSensorGivesTheSameEnergyPerOrder) {
 
 // Which side of a plane a point within it lies on is rounding; a lobe and its density, each in its
 // own frame, must not be asked.
-TEST(SurfaceWalk, StepsWithinAPlaneCarryNothing) {
+TEST(RandomWalk, StepsWithinAPlaneCarryNothing) {
     core::Rng rng(test_support::seed_of("SurfaceWalk"), 0, 0);
     const core::WallScan scan = test_support::confocal_scan(kThreeWallPoints);
     for (int i = 0; i < 100; ++i) {
@@ -197,7 +198,7 @@ TEST(SurfaceWalk, StepsWithinAPlaneCarryNothing) {
                                   Vec3(-0.1, 0.5, rng.uniform())};
         const renderer::Scene scene(
             {{test_support::parallelogram_object(shape)}, {}}, scan, renderer::RelayWall{});
-        const renderer::SurfaceWalk walk(scene, 1e-4);
+        const renderer::RandomWalk walk(scene, 1e-4);
         const auto point = [&] {
             const double u = rng.uniform();
             return renderer::SurfacePoint{scene.facet(0).point(u, (1.0 - u) * rng.uniform()), 0};

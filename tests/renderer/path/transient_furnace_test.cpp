@@ -217,7 +217,7 @@ TEST(TransientFurnace, ThirdBounceOfAConfocalPointIsALinearRamp) {
     }
 }
 
-// Through the front door, independent seeds: totals and mean lengths of orders 3 to 5 by t-test.
+// Through the entry point, independent seeds: totals and mean lengths of orders 3 to 5 by t-test.
 TEST(TransientFurnace, FrontDoorGivesTotalsAndMeansOfEveryOrder) {
     constexpr int kSeeds = 20;
     core::WallScan scan;
@@ -266,7 +266,7 @@ TEST(TransientFurnace, FrontDoorGivesTotalsAndMeansOfEveryOrder) {
     }
 }
 
-// Through the front door: order 2 is the straight way from point to point.
+// Through the entry point: order 2 is the straight way from point to point.
 TEST(TransientFurnace, FrontDoorAddsTheStraightWay) {
     core::WallScan scan;
     scan.pattern = core::ScanPattern::Single;

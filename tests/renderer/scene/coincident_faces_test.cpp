@@ -142,7 +142,7 @@ TEST(CoincidentFaces, SheetsADistanceApartStay) {
 }
 
 TEST(CoincidentFaces, ABladeStays) {
-    Object other = tilted("other");  // shares an edge, and opens by a milliradian
+    Object other = tilted("other");  // fractions an edge, and opens by a milliradian
     other.mesh.vertices[2].z() += 3.5e-4;
     other.mesh.vertices[3].z() += 3.5e-4;
     expect_both(other);

@@ -203,7 +203,7 @@ TEST_F(LoadGeometry, PlacedMeshesWithoutScaleNameAnImplausibleSize) {
     };
     EXPECT_TRUE(warnings({{"scale", 1.0}}).empty());
     ASSERT_EQ(warnings(core::Json::object()).size(), 1U);
-    EXPECT_NE(warnings(core::Json::object())[0].find("scale states another"), std::string::npos);
+    EXPECT_NE(warnings(core::Json::object())[0].find("scale gives another"), std::string::npos);
 }
 
 TEST_F(LoadGeometry, KeysOfPlacedMeshesAreChecked) {

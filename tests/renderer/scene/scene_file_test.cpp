@@ -80,7 +80,7 @@ TEST(SceneFile, WallFrameHasXAlongUpCrossNormal) {
     EXPECT_NEAR(frame.linear().determinant(), 1.0, 1e-12);
 }
 
-TEST(SceneFile, PatternsPairPointsAsStated) {
+TEST(SceneFile, PatternsPairPointsAsDescribed) {
     auto scene = read_text(R"({"geometry": "a.glb", "scan": {"pattern": "exhaustive",
         "sensing_points": [3, 2], "illumination_points": [2, 2]}})");
     core::WallScan scan = renderer::make_scan(scene).wall();

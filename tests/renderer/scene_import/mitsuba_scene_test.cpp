@@ -70,7 +70,7 @@ TEST(MitsubaScene, ConfocalScansOfOnePixelHaveTheOriginalGrid) {
     EXPECT_EQ(scene.description.scan.sensing_points, (std::array<int, 2>{32, 16}));
 }
 
-TEST(MitsubaScene, LegsToTheDevicesCountWhereTheSceneCountsThem) {
+TEST(MitsubaScene, SegmentsToTheDevicesCountWhereTheSceneCountsThem) {
     const std::string flag = R"(<boolean name="account_first_and_last_bounces" value="true"/>)";
     for (const char* place : {"@@integrator", "@@sensor"}) {
         EXPECT_EQ(import_xml({{place, flag}}).description.scan.opl_origin, core::OplOrigin::Device);

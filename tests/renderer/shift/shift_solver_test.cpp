@@ -160,10 +160,10 @@ PlaneSetup plane_setup(core::Rng& rng, double moved_m, double offset_m) {
     return {{chart, source, 1.0}, {chart, target, 1.0}, offset_m, {x, 2.0 * (rng.uniform() - 0.5)}};
 }
 
-// Share of shifts whose way back ends elsewhere, and the middle of how far.
+// Fraction of shifts whose way back ends elsewhere, and the middle of how far.
 struct Irreversibility {
     double median_m;
-    double share;
+    double fraction;
 };
 
 template <class Gauge>
@@ -188,9 +188,9 @@ Irreversibility irreversibility_of(const Gauge& gauge) {
 TEST(ShiftSolver, StartGradientIsNotReversible) {
     const Irreversibility start = irreversibility_of(renderer::StartGauge{});
     EXPECT_GE(start.median_m, 1e-4);
-    EXPECT_GE(start.share, 0.95);
+    EXPECT_GE(start.fraction, 0.95);
     EXPECT_LE(irreversibility_of(renderer::AverageGauge{}).median_m, 1e-12);
-    EXPECT_LE(irreversibility_of(renderer::AverageGauge{}).share, 0.02);
+    EXPECT_LE(irreversibility_of(renderer::AverageGauge{}).fraction, 0.02);
 }
 
 TEST(ShiftSolver, ReverseCheckTakesNothingThatDoesNotComeBack) {

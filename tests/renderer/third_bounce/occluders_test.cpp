@@ -18,7 +18,7 @@ using test_support::OccluderScene;
 
 struct Promise {
     double target = 0.0;
-    double stated = 0.0;
+    double reported = 0.0;
     double error = 0.0;
 };
 
@@ -56,8 +56,8 @@ TEST(ThirdBounceBehindOccluders, CombsAndDotsAreWithinTheTarget) {
         for (const Promise& promise : promises_of(setup, {0.05, 0.02})) {
             SCOPED_TRACE(testing::Message() << setup.name << " at " << promise.target);
             EXPECT_LE(promise.error, promise.target);
-            EXPECT_LE(promise.stated, promise.target);
-            EXPECT_LE(promise.error, 1.2 * promise.stated);
+            EXPECT_LE(promise.reported, promise.target);
+            EXPECT_LE(promise.error, 1.2 * promise.reported);
         }
     }
 }

@@ -120,8 +120,8 @@ TEST(ThirdBounceScenes, InterruptedBetweenBatchesItIsCompleteButCoarser) {
     for (const std::function<bool()>& stop :
          std::vector<std::function<bool()>>{while_integrating, in_the_first_trial}) {
         core::Progress progress;
-        progress.report = [&](double share, const std::string&) {
-            integrates = integrates || share > 0.0;
+        progress.report = [&](double fraction, const std::string&) {
+            integrates = integrates || fraction > 0.0;
         };
         progress.stop_requested = stop;
         const renderer::ThirdBounce early = integrate(progress);

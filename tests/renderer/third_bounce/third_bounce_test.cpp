@@ -92,13 +92,13 @@ TEST_P(ThirdBounce, MovingEverythingByAKilometreChangesNothing) {
 }
 
 TEST_P(ThirdBounce, SubBinShiftsOfTheAxisKeepTheEnergy) {
-    const auto shifted = [&](double share) {
-        const core::TimeAxis axis{1.1 - share * 0.02, 0.02, 60};
+    const auto shifted = [&](double fraction) {
+        const core::TimeAxis axis{1.1 - fraction * 0.02, 0.02, 60};
         return test_support::sum_of(render_shapes({kTiltedPanel}, scan(), axis, 0.01));
     };
     const double expected = shifted(0.0);
-    for (const double share : {0.13, 0.5, 0.77}) {
-        EXPECT_NEAR(shifted(share) / expected, 1.0, 1e-5) << share;
+    for (const double fraction : {0.13, 0.5, 0.77}) {
+        EXPECT_NEAR(shifted(fraction) / expected, 1.0, 1e-5) << fraction;
     }
 }
 
@@ -111,29 +111,30 @@ TEST_P(ThirdBounce, GateEqualsTheBinOfAHistogram) {
     EXPECT_LT(test_support::relative_l2(gate, bin), 4e-3);
 }
 
-TEST_P(ThirdBounce, DeviceLegsShiftTheAxis) {
-    core::WallScan scan_with_legs = scan();
-    scan_with_legs.opl_origin = core::OplOrigin::Device;
-    scan_with_legs.laser_position = Vec3(0.2, 0.0, 2.0);
-    scan_with_legs.detector_position = Vec3(-0.2, 0.1, 2.0);
-    const auto with_legs = render_shapes({kTiltedPanel}, scan_with_legs, {4.5, 0.02, 100}, 1e-3);
+TEST_P(ThirdBounce, DeviceSegmentsShiftTheAxis) {
+    core::WallScan scan_with_segments = scan();
+    scan_with_segments.opl_origin = core::OplOrigin::Device;
+    scan_with_segments.laser_position = Vec3(0.2, 0.0, 2.0);
+    scan_with_segments.detector_position = Vec3(-0.2, 0.1, 2.0);
+    const auto with_segments =
+        render_shapes({kTiltedPanel}, scan_with_segments, {4.5, 0.02, 100}, 1e-3);
     const auto without = render_shapes({kTiltedPanel}, scan(), {0.0, 0.02, 200}, 1e-3);
-    EXPECT_NEAR(test_support::sum_of(with_legs) / test_support::sum_of(without), 1.0, 1e-5);
+    EXPECT_NEAR(test_support::sum_of(with_segments) / test_support::sum_of(without), 1.0, 1e-5);
     for (std::size_t pair = 0; pair < scan().num_pairs(); ++pair) {
         double mean_with = 0.0;
         double mean_without = 0.0;
         double sum_with = 0.0;
         double sum_without = 0.0;
         for (std::size_t i = 0; i < 100; ++i) {
-            mean_with += with_legs[pair * 100 + i] * (4.5 + 0.02 * static_cast<double>(i));
-            sum_with += with_legs[pair * 100 + i];
+            mean_with += with_segments[pair * 100 + i] * (4.5 + 0.02 * static_cast<double>(i));
+            sum_with += with_segments[pair * 100 + i];
         }
         for (std::size_t i = 0; i < 200; ++i) {
             mean_without += without[pair * 200 + i] * 0.02 * static_cast<double>(i);
             sum_without += without[pair * 200 + i];
         }
         EXPECT_NEAR(mean_with / sum_with - mean_without / sum_without,
-                    scan_with_legs.device_legs_m(pair),
+                    scan_with_segments.device_segments_m(pair),
                     1e-3);
     }
 }

@@ -95,10 +95,10 @@ TEST(ShadowRayTracer, AnswersAsSingleRays) {
                 const std::uint32_t bit = rays.part < ShadowRays::kFirstFixed
                                               ? parts.bit(p, parts.quarter(p, rays.part))
                                               : rays.part - ShadowRays::kFirstFixed;
-                const auto& share = renderer::centers_of_bits()[bit];
+                const auto& barycentric = renderer::centers_of_bits()[bit];
                 Vec3 end = setup.elements.origin;
                 for (std::size_t c = 0; c < 3; ++c) {
-                    end += share[c] * block.corners[c][i];
+                    end += barycentric[c] * block.corners[c][i];
                 }
                 const Vec3 from = points[p].position + setup.elements.origin;
                 end += std::copysign(block.rise_m[i], normal.dot(from - end)) * normal;

@@ -46,7 +46,7 @@ std::vector<double> histogram_of(const BentTriangle& triangle, const TimeAxis& a
 }
 
 // Lengths of corners within `spread` of 1 m, bends up to `bend` along edges of a plane triangle:
-// of a convex function, as legs are.
+// of a convex function, as segments are.
 BentTriangle random_triangle(core::Rng& rng, double spread, double bend) {
     BentTriangle triangle;
     for (double& opl : triangle.opl_m) opl = 1.0 + spread * rng.uniform();
@@ -191,18 +191,18 @@ TEST(BentTriangle, PartOfTheAxisHoldsItsBins) {
 }
 
 // Weights linear, so that only lengths err: a piece's lengths follow from its corners and edges.
-BentTriangle confocal_piece(const std::array<Vec3, 3>& corners) {
-    BentTriangle piece;
-    double mean_leg = 0.0;
-    for (const Vec3& corner : corners) mean_leg += corner.norm() / 3.0;
+BentTriangle confocal_part(const std::array<Vec3, 3>& corners) {
+    BentTriangle part;
+    double mean_segment = 0.0;
+    for (const Vec3& corner : corners) mean_segment += corner.norm() / 3.0;
     for (std::size_t j = 0; j < 3; ++j) {
         const Vec3& a = corners[(j + 1) % 3];
         const Vec3& b = corners[(j + 2) % 3];
-        piece.opl_m[j] = 2.0 * corners[j].norm();
-        piece.bend_m[j] =
-            2.0 * ((b - a).squaredNorm() - std::pow(b.norm() - a.norm(), 2)) / mean_leg;
+        part.opl_m[j] = 2.0 * corners[j].norm();
+        part.bend_m[j] =
+            2.0 * ((b - a).squaredNorm() - std::pow(b.norm() - a.norm(), 2)) / mean_segment;
     }
-    return piece;
+    return part;
 }
 
 // The tilted triangle of triangle_histogram_test.cpp in few pieces: with kappa = h^2/(8 r w_r), w_r
@@ -218,10 +218,10 @@ TEST(BentTriangle, ErrorAgainstExactArcsFollowsTheSizeRule) {
         const Vec3 area_vector = 0.5 * e1.cross(e2);
         const Vec3 normal = area_vector.normalized();
         std::vector<double> histogram(80);
-        const auto add = [&](const std::array<Vec3, 3>& piece) {
-            BentTriangle bent = confocal_piece(piece);
+        const auto add = [&](const std::array<Vec3, 3>& part) {
+            BentTriangle bent = confocal_part(part);
             for (std::size_t j = 0; j < 3; ++j) {
-                const Vec3& d = piece[j];
+                const Vec3& d = part[j];
                 bent.weight[j] = area_vector.norm() * std::pow(d.z() * normal.dot(d), 2) /
                                  std::pow(d.squaredNorm(), 4);
             }

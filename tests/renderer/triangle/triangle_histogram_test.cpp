@@ -56,10 +56,10 @@ TriangleKnots confocal_knots(const Corners& corners, const Vec3& wall_normal, co
 }
 
 // Cuts the triangle into steps^2 congruent ones and adds each. The wall point is the origin.
-std::vector<double> pieces_of(const Corners& corners,
-                              const Vec3& wall_normal,
-                              const TimeAxis& axis,
-                              int steps) {
+std::vector<double> parts_of(const Corners& corners,
+                             const Vec3& wall_normal,
+                             const TimeAxis& axis,
+                             int steps) {
     const Vec3 e1 = (corners[1] - corners[0]) / steps;
     const Vec3 e2 = (corners[2] - corners[0]) / steps;
     const Vec3 area_vector = 0.5 * e1.cross(e2);
@@ -254,7 +254,7 @@ TEST(ExactArcs, MatchesQuadrature) {
 TEST(ExactArcs, MatchTheKernelOfManyPieces) {
     const TimeAxis axis{1.2, 0.0096, 80};
     const auto arcs = test_support::confocal_arcs(kTriangle, Vec3::Zero(), Vec3::UnitZ(), axis);
-    EXPECT_LT(relative_l2(pieces_of(kTriangle, Vec3::UnitZ(), axis, 256), arcs), 1e-5);
+    EXPECT_LT(relative_l2(parts_of(kTriangle, Vec3::UnitZ(), axis, 256), arcs), 1e-5);
 }
 
 // Relative error 0.1 kappa, kappa = h^2/(8 r w_r), w_r half a bin in range.
@@ -264,7 +264,7 @@ TEST(TriangleHistogram, ErrorFollowsTheSizeRule) {
     for (const int steps : {4, 8, 16, 32}) {
         const double edge = (kTriangle[1] - kTriangle[0]).norm() / steps;
         const double kappa = edge * edge / (8.0 * 0.75 * axis.bin_width_m / 2.0);
-        EXPECT_LT(relative_l2(pieces_of(kTriangle, Vec3::UnitZ(), axis, steps), arcs), 0.1 * kappa)
+        EXPECT_LT(relative_l2(parts_of(kTriangle, Vec3::UnitZ(), axis, steps), arcs), 0.1 * kappa)
             << steps;
     }
 }
@@ -286,7 +286,7 @@ TEST(TriangleHistogram, BehindADetectorOf94PicosecondsTheErrorIsThatOfTheDesign)
     const auto arcs = blurred(
         test_support::confocal_arcs(kTriangle, Vec3::Zero(), Vec3::UnitZ(), axis), sigma_bins);
     const auto error = [&](int steps) {
-        return relative_l2(blurred(pieces_of(kTriangle, Vec3::UnitZ(), axis, steps), sigma_bins),
+        return relative_l2(blurred(parts_of(kTriangle, Vec3::UnitZ(), axis, steps), sigma_bins),
                            arcs);
     };
     EXPECT_LT(error(4), 1.5e-2);  // pieces of 10 cm
@@ -297,7 +297,7 @@ TEST(TriangleHistogram, SubBinShiftsChangeTheEnergyByLessThanOneIn1e5) {
     for (const double shift : {0.0, 0.1, 0.37, 0.5, 0.93}) {
         const TimeAxis axis{1.2 - 0.0096 * shift, 0.0096, 82};
         const auto arcs = test_support::confocal_arcs(kTriangle, Vec3::Zero(), Vec3::UnitZ(), axis);
-        const double energy = test_support::sum_of(pieces_of(kTriangle, Vec3::UnitZ(), axis, 8));
+        const double energy = test_support::sum_of(parts_of(kTriangle, Vec3::UnitZ(), axis, 8));
         EXPECT_NEAR(energy / test_support::sum_of(arcs), 1.0, 1e-5) << shift;
     }
 }
@@ -316,8 +316,8 @@ class HardFacets : public testing::TestWithParam<HardCase> {};
 TEST_P(HardFacets, MatchTheExactArcs) {
     const auto& [name, corners, axis, steps, allowed] = GetParam();
     const auto arcs = test_support::confocal_arcs(corners, Vec3::Zero(), Vec3::UnitZ(), axis);
-    const auto pieces = pieces_of(corners, Vec3::UnitZ(), axis, steps);
-    EXPECT_LT(relative_l2(pieces, arcs), allowed);
+    const auto parts = parts_of(corners, Vec3::UnitZ(), axis, steps);
+    EXPECT_LT(relative_l2(parts, arcs), allowed);
     EXPECT_GT(test_support::sum_of(arcs), 0.0);
 }
 

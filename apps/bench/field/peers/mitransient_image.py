@@ -2,7 +2,7 @@
 """Renders an image of a scene lit by a point light by mitransient, once for every seed.
 
 Conventions, and how they are met. Unit: a light of intensity 1 / (4 pi) sheds 1 W, as ours. Orders:
-`max_depth` counts the leg from the light, too. Lengths: a path counts from the camera's near plane
+`max_depth` counts the segment from the light, too. Lengths: a path counts from the camera's near plane
 on, which is therefore moved to the camera, and rays start off surfaces, so that the scene is given
 in millimetres (see mitransient_render.py). Sides: `twosided`, as ours.
 """

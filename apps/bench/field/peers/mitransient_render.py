@@ -3,7 +3,7 @@
 
 Conventions, and how they are met. Unit: a projector of irradiance 1 sheds pi cos / distance^2 on its
 spot, which counts as one unit of area; dividing by that gives radiance for 1 W, as ours. Orders:
-`max_depth` is the number of bounces, as the leg from the laser is none of its loop. Lengths: rays
+`max_depth` is the number of bounces, as the segment from the laser is none of its loop. Lengths: rays
 start 9e-5 (1 + |p|) off a surface at p, in the scene's unit, which shortens paths; in metres by
 0.11 mm, so that the scene is given in millimetres, where 0.02 mm are left. Faces: one-sided, so that
 the request has to turn them to the light. Laser and detector stand beside the wall, where nothing

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kSide = 8;
 constexpr int kBins = 64;
 constexpr std::size_t kBlock = 4;
-constexpr double kLeastShare = 0.05;
+constexpr double kLeastFraction = 0.05;
 constexpr int kRuns = 24;
 
 // A hump of light in every histogram, in other bins for other points.
@@ -47,7 +47,7 @@ std::vector<core::Transient> runs_of(const core::Transient& truth, double paths_
 }
 
 BinAgreement compare(const core::Transient& truth, const std::vector<core::Transient>& runs) {
-    return bin_agreement_of(truth, runs, {kSide, kSide}, kBlock, kLeastShare);
+    return bin_agreement_of(truth, runs, {kSide, kSide}, kBlock, kLeastFraction);
 }
 
 TEST(BinAgreement, RunsThatVaryByChanceAgree) {

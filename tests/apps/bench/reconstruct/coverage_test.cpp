@@ -8,7 +8,7 @@
 namespace apps {
 namespace {
 
-TEST(Coverage, OfStatedDepthsIsThatOfTheirDeviations) {
+TEST(Coverage, OfReportedDepthsIsThatOfTheirDeviations) {
     CoverageBenchSettings settings;
     settings.surfaces = 20;
     settings.first = 500;

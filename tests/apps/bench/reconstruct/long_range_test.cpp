@@ -9,7 +9,7 @@ namespace apps {
 namespace {
 
 // Draws of the photons differ by 0.03. With the background that the gate seems to have, 0.58 are
-// stated; without reweighted sparsity, 0.60.
+// given; without reweighted sparsity, 0.60.
 TEST(LongRange, TheSolverReadsALetterThatTheDirectInversionDoesNot) {
     LongRangeBenchSettings settings;
     settings.photons = {5000.0};

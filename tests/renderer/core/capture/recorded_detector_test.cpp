@@ -42,7 +42,7 @@ TEST(RecordedDetector, SpotIsThatOfTheProvenance) {
     }
 }
 
-TEST(RecordedDetector, CapturesThatStateNoneHaveNone) {
+TEST(RecordedDetector, CapturesThatGiveNoneHaveNone) {
     for (const core::Json& made : {core::Json(nullptr),
                                    core::Json::array({1, 2}),
                                    core::Json{{"detector", "a SPAD"}},
@@ -54,7 +54,7 @@ TEST(RecordedDetector, CapturesThatStateNoneHaveNone) {
         EXPECT_FALSE(core::detector_warning(capture)) << made;
         core::ResponseSettings asked;
         asked.of_capture = true;
-        EXPECT_ERROR_WITH(core::resolve_response(asked, capture, "response"), "states no response");
+        EXPECT_ERROR_WITH(core::resolve_response(asked, capture, "response"), "gives no response");
     }
 }
 
@@ -64,15 +64,15 @@ TEST(RecordedDetector, ItsResponseIsUsedWhereItMattersAndNoneIsAskedFor) {
     EXPECT_EQ(core::resolve_response(asked, capture, "response").jitter_fwhm_ps, 60.0);
     core::read_value(core::Json("none"), "response", asked);
     EXPECT_EQ(core::write_value(asked), "none");
-    EXPECT_FALSE(core::is_stated(core::resolve_response(asked, capture, "response")));
+    EXPECT_FALSE(core::is_given(core::resolve_response(asked, capture, "response")));
     // A tenth of a bin does not matter.
     const core::Capture narrow = recorded_by({{"response", {{"jitter_fwhm_ps", 6.0}}}});
-    EXPECT_FALSE(core::is_stated(core::resolve_response({}, narrow, "response")));
+    EXPECT_FALSE(core::is_given(core::resolve_response({}, narrow, "response")));
 }
 
 TEST(RecordedDetector, TheScenesDetectorIsTakenWhereNoneIsAskedFor) {
     core::Capture capture = recorded_by(nullptr);
-    EXPECT_FALSE(core::is_stated(core::resolve_scene_response({}, capture)));
+    EXPECT_FALSE(core::is_given(core::resolve_scene_response({}, capture)));
     capture.scene_info["settings"]["detector"]["jitter_fwhm_ps"] = 60.0;
     EXPECT_EQ(core::resolve_scene_response({}, capture).jitter_fwhm_ps, 60.0);
     core::ResponseSettings asked;
@@ -80,7 +80,7 @@ TEST(RecordedDetector, TheScenesDetectorIsTakenWhereNoneIsAskedFor) {
     EXPECT_EQ(core::resolve_scene_response(asked, capture).jitter_fwhm_ps, 0.0);
     asked = {};
     asked.is_none = true;
-    EXPECT_FALSE(core::is_stated(core::resolve_scene_response(asked, capture)));
+    EXPECT_FALSE(core::is_given(core::resolve_scene_response(asked, capture)));
 }
 
 TEST(RecordedDetector, PileUpIsNamedWhereItMatters) {

@@ -91,14 +91,15 @@ TEST(SensorFootprint, ZoneOfItsOwnLightGetsAllOfIt) {
     setup.model.illumination = core::SensorIllumination::Zones;
     const SensorFootprints own = core::make_footprints(setup);
     for (std::size_t zone = 0; zone < 6; ++zone) {
-        const double share = sum_of_weights(flood.zones[zone].lit.weights);
+        const double fraction = sum_of_weights(flood.zones[zone].lit.weights);
         EXPECT_NEAR(sum_of_weights(own.zones[zone].lit.weights), 1.0, 1e-12);
-        EXPECT_NEAR(
-            flood.zones[zone].seen_irradiance[5] / share, own.zones[zone].seen_irradiance[5], 1e-9);
+        EXPECT_NEAR(flood.zones[zone].seen_irradiance[5] / fraction,
+                    own.zones[zone].seen_irradiance[5],
+                    1e-9);
     }
 }
 
-// The irradiance times the area of a part, from its own corners, is the share of the light.
+// The irradiance times the area of a part, from its own corners, is the fraction of the light.
 TEST(SensorFootprint, IrradianceIsLightPerArea) {
     SensorSetup setup = oblique_setup();
     setup.subsamples = 40;

@@ -51,8 +51,8 @@ TEST(JsonText, MessagesShowCharactersAsPeopleWriteThem) {
     EXPECT_LT(message.size(), 250U) << message;
 }
 
-TEST(JsonText, UsualSlipsAreCalledByTheirName) {
-    const std::vector<std::array<std::string, 2>> slips{
+TEST(JsonText, UsualMistakesAreCalledByTheirName) {
+    const std::vector<std::array<std::string, 2>> mistakes{
         {"[1, 2,]", "column 7: found ']'; the last item has no comma behind it"},
         {"{\"a\": 1,\n}", "line 2, column 1: found '}'; the last item has no comma"},
         {"{\"größe\": “x”}", "column 11: found '“'; texts stand between straight double quotes"},
@@ -71,7 +71,7 @@ TEST(JsonText, UsualSlipsAreCalledByTheirName) {
         {"[1, 2", "it ends before all brackets are closed"},
         {"", "it is empty"},
         {"\xff\xfe{", "its text is UTF-16; must be UTF-8"}};
-    for (const auto& [text, reason] : slips) {
+    for (const auto& [text, reason] : mistakes) {
         EXPECT_ERROR_WITH(parse_json(text, "text"), reason) << text;
     }
     EXPECT_EQ(parse_json("\xef\xbb\xbf[1]", "text"), Json::array({1})) << "a mark of UTF-8 is none";

@@ -11,10 +11,10 @@ namespace renderer {
 
 /// Paths that are whole but for the question whether two neighbours on them see each other. Shadow
 /// rays are traced for many of them together; those in sight go into a histogram.
-class WaitingConnections {
+class ShadowRayQueue {
  public:
     /// Both must outlive this.
-    WaitingConnections(const Scene& scene, PassHistogram& histogram)
+    ShadowRayQueue(const Scene& scene, PassHistogram& histogram)
         : scene_(scene), histogram_(histogram) {}
 
     /// One of the two neighbours: a point and its normal (unit).
@@ -22,7 +22,8 @@ class WaitingConnections {
         const core::Vec3& position;
         const core::Vec3& normal;
     };
-    void add(const End& from, const End& to, int channel, const PathExtent& extent, double value);
+    void add(
+        const End& from, const End& to, int channel, const OpticalPath& optical_path, double value);
     /// Traces what still waits; to be called after the last add().
     void finish();
     std::uint64_t num_rays() const { return num_rays_; }
@@ -37,7 +38,7 @@ class WaitingConnections {
     SegmentEnds from_;
     SegmentEnds to_;
     std::array<double, kSize> values_;
-    std::array<PathExtent, kSize> extents_;
+    std::array<OpticalPath, kSize> optical_paths_;
     std::array<int, kSize> channels_;
 };
 

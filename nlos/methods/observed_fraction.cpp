@@ -6,7 +6,7 @@
 namespace nlos {
 namespace {
 
-constexpr float kSmallestShare = 0.5F;  // of the mean share
+constexpr float kSmallestFraction = 0.5F;  // of the mean fraction
 
 /// 1 in the observed bins, or in all bins.
 core::Transient sight(const MethodInput& input, const std::vector<core::BinRange>* observed) {
@@ -34,27 +34,27 @@ std::vector<float> count_lookups(const MethodInput& input,
 
 }  // namespace
 
-void divide_by_observed_share(const MethodInput& input, std::size_t num_slabs, Volume& volume) {
+void divide_by_observed_fraction(const MethodInput& input, std::size_t num_slabs, Volume& volume) {
     const std::vector<float> all =
         count_lookups(input, nullptr, input.progress.part(1.0 / 3.0, 2.0 / 3.0), num_slabs);
-    std::vector<float> shares =
+    std::vector<float> fractions =
         count_lookups(input, input.observed, input.progress.part(2.0 / 3.0, 1.0), num_slabs);
     double lookups = 0.0;
     double sum = 0.0;
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-        const float seen = shares[i];
-        shares[i] = all[i] > 0.0F ? seen / all[i] : 0.0F;
+    for (std::size_t i = 0; i < fractions.size(); ++i) {
+        const float seen = fractions[i];
+        fractions[i] = all[i] > 0.0F ? seen / all[i] : 0.0F;
         lookups += static_cast<double>(seen);
-        sum += static_cast<double>(seen) * static_cast<double>(shares[i]);
+        sum += static_cast<double>(seen) * static_cast<double>(fractions[i]);
     }
     if (!(lookups > 0.0)) return;
-    const float smallest = kSmallestShare * static_cast<float>(sum / lookups);
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-        volume.values[i] /= std::max(smallest, shares[i]);
+    const float smallest = kSmallestFraction * static_cast<float>(sum / lookups);
+    for (std::size_t i = 0; i < fractions.size(); ++i) {
+        volume.values[i] /= std::max(smallest, fractions[i]);
     }
 }
 
-double observed_share_bytes(const MethodInput& input) {
+double observed_fraction_bytes(const MethodInput& input) {
     if (!input.observed) return 0.0;
     return 4.0 * static_cast<double>(input.transient.values().size()) +
            8.0 * static_cast<double>(input.axes.num_voxels());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "apps/report/result_cards.h"
+#include "apps/report/result_panels.h"
 #include "apps/tables/tables.h"
 #include "renderer/core/settings/json_fwd.h"
 
@@ -18,7 +18,7 @@ struct Figure {
 };
 
 /// What a benchmark found, see bench/output.h.
-struct BenchCard {
+struct BenchPanel {
     std::string file;
     std::vector<Fact> facts;
     std::vector<Table> tables;
@@ -34,13 +34,13 @@ bool is_collection_of_benches(const core::Json& json);
 /// A benchmark's facts and tables; its figures are still to be given to it.
 ///
 /// path   of the JSON file
-BenchCard read_bench_card(const std::string& path, const core::Json& json);
+BenchPanel read_bench_panel(const std::string& path, const core::Json& json);
 
 /// Moves figures whose names begin with a benchmark's to it, one format of each.
-void give_figures_to_benches(std::vector<Figure>& figures, std::vector<BenchCard>& benches);
+void give_figures_to_benches(std::vector<Figure>& figures, std::vector<BenchPanel>& benches);
 
 /// The benchmarks as HTML: what they ran on, short tables, plots, and long tables folded.
-std::string benches_html(const std::vector<BenchCard>& benches);
+std::string benches_html(const std::vector<BenchPanel>& benches);
 
 /// The table of hard cases as HTML.
 ///

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "apps/report/bench_cards.h"
+#include "apps/report/bench_panels.h"
 #include "renderer/core/settings/json_file.h"
 
 #include <string>
@@ -10,7 +10,7 @@
 namespace apps {
 
 /// What a sweep over settings found, see sweep/sweep_summary.h.
-struct SweepCard {
+struct SweepPanel {
     std::string file;
     core::Json content;
     std::vector<Figure> figures;
@@ -20,9 +20,9 @@ struct SweepCard {
 bool is_sweep(const core::Json& json);
 
 /// Moves the figures that a sweep drew to it, one format of each.
-void give_figures_to_sweeps(std::vector<Figure>& figures, std::vector<SweepCard>& sweeps);
+void give_figures_to_sweeps(std::vector<Figure>& figures, std::vector<SweepPanel>& sweeps);
 
 /// The sweeps as HTML: plots, table, runs that failed.
-std::string sweeps_html(const std::vector<SweepCard>& sweeps);
+std::string sweeps_html(const std::vector<SweepPanel>& sweeps);
 
 }  // namespace apps

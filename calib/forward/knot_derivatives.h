@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "calib/forward/path_legs.h"
+#include "calib/forward/path_segments.h"
 #include "renderer/geometry/visibility_mask.h"
 #include "renderer/triangle/triangle_histogram.h"
 
@@ -11,7 +11,7 @@
 namespace calib {
 
 /// How the knots of an element change.
-struct KnotChange {
+struct KnotDerivative {
     std::array<double, 3> opl;
     std::array<double, 3> weight;
 };
@@ -47,8 +47,9 @@ class KnotFit {
 
     const renderer::TriangleKnots& knots() const { return knots_; }
 
-    KnotChange change(const std::array<double, 6>& opl, const std::array<double, 6>& weight) const {
-        KnotChange result;
+    KnotDerivative change(const std::array<double, 6>& opl,
+                          const std::array<double, 6>& weight) const {
+        KnotDerivative result;
         const double shift = mean3(opl, 3) - mean3(opl, 0);
         const double mean = mean3(weight, 3);
         const double corner_mean = mean3(weight, 0);
@@ -68,7 +69,7 @@ class KnotFit {
     }
 
     /// The transpose of change(): gradients by the nodes from those by the knots.
-    NodeGradients pull(const KnotChange& by_knots) const {
+    NodeGradients pull(const KnotDerivative& by_knots) const {
         double opl_sum = 0.0;
         double weight_sum = 0.0;
         double by_spread = 0.0;  // per change of the spread
@@ -120,26 +121,27 @@ inline KnotFit fit_knots(const std::array<Path, 6>& paths, double opl_m, double 
 /// The weights of an element's visible part: the product of two linear functions, made linear again
 /// with its integral kept, and how it changes with the weights.
 ///
-/// With W, S and P the sums of weights w, shares s and products w s, the integral of the product is
-/// (W S + P)/12 times twice the area, that of linear corner values p is their sum over 6 times it.
+/// With W, S and P the sums of weights w, fractions s and products w s, the integral of the product
+/// is (W S + P)/12 times twice the area, that of linear corner values p is their sum over 6 times
+/// it.
 class VisibleWeights {
  public:
     VisibleWeights(const std::array<double, 3>& weight, renderer::VisibilityMask mask)
         : is_whole_(mask == renderer::kAllVisible), weight_(weight) {
         if (is_whole_) return;
-        share_ = renderer::visible_share(mask);
+        fraction_ = renderer::visible_fraction(mask);
         for (std::size_t j = 0; j < 3; ++j) {
             weights_ += weight[j];
-            shares_ += share_[j];
-            products_ += weight[j] * share_[j];
+            fractions_ += fraction_[j];
+            products_ += weight[j] * fraction_[j];
         }
-        factor_ = products_ > 0.0 ? 0.25 * (weights_ * shares_ / products_ + 1.0) : 0.0;
+        factor_ = products_ > 0.0 ? 0.25 * (weights_ * fractions_ / products_ + 1.0) : 0.0;
     }
 
     std::array<double, 3> values() const {
         if (is_whole_) return weight_;
         std::array<double, 3> result{};
-        for (std::size_t j = 0; j < 3; ++j) result[j] = factor_ * weight_[j] * share_[j];
+        for (std::size_t j = 0; j < 3; ++j) result[j] = factor_ * weight_[j] * fraction_[j];
         return result;
     }
 
@@ -153,21 +155,21 @@ class VisibleWeights {
         double products = 0.0;
         for (std::size_t j = 0; j < 3; ++j) {
             weights += change[j];
-            products += change[j] * share_[j];
+            products += change[j] * fraction_[j];
         }
         const double factor =
-            0.25 * shares_ / products_ * (weights - weights_ * products / products_);
+            0.25 * fractions_ / products_ * (weights - weights_ * products / products_);
         for (std::size_t j = 0; j < 3; ++j) {
-            change[j] = share_[j] * (factor_ * change[j] + factor * weight_[j]);
+            change[j] = fraction_[j] * (factor_ * change[j] + factor * weight_[j]);
         }
     }
 
  private:
     bool is_whole_;
     std::array<double, 3> weight_;
-    std::array<double, 3> share_{};
+    std::array<double, 3> fraction_{};
     double weights_ = 0.0;
-    double shares_ = 0.0;
+    double fractions_ = 0.0;
     double products_ = 0.0;
     double factor_ = 0.0;
 };

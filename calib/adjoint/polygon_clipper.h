@@ -27,22 +27,22 @@ struct CutLine {
     std::array<std::uint32_t, 3> vertices{};  ///< of the mesh
 };
 
-/// A corner of a piece by its barycentric coordinates in the element: where the line of the edge
+/// A corner of a polygon by its barycentric coordinates in the element: where the line of the edge
 /// before it and `line`, that of the edge behind it, meet.
-struct PieceVertex {
-    core::Vec3 share;
+struct PolygonVertex {
+    core::Vec3 barycentric;
     std::uint32_t line = 0;
 };
 
-/// Cuts an element into convex pieces along straight lines.
+/// Cuts an element into convex polygons along straight lines.
 ///
 /// Heights above planes are linear over an element, so that all of this happens in its barycentric
 /// coordinates: a line is three numbers, and two lines meet where their cross product points to.
-class PieceCutter {
+class PolygonClipper {
  public:
     /// Starts with the whole element.
     ///
-    /// margin_m   corners of pieces this near to a line lie on it
+    /// margin_m   corners of polygons this near to a line lie on it
     void start(double margin_m);
 
     /// Keeps what lies above the line's plane.
@@ -53,31 +53,31 @@ class PieceCutter {
     bool empty() const { return ends_.empty(); }
     /// Whether nothing was cut off or apart since start().
     bool is_whole() const;
-    std::size_t num_pieces() const { return ends_.size(); }
+    std::size_t num_polygons() const { return ends_.size(); }
     /// A convex polygon; its corners go around as those of the element do.
-    std::span<const PieceVertex> piece(std::size_t i) const {
+    std::span<const PolygonVertex> polygon(std::size_t i) const {
         const std::size_t begin = i == 0 ? 0 : ends_[i - 1];
         return {vertices_.data() + begin, ends_[i] - begin};
     }
-    /// The lines that edges of pieces lie on; the first three are the element's edges.
+    /// The lines that edges of polygons lie on; the first three are the element's edges.
     std::span<const CutLine> lines() const { return lines_; }
 
  private:
-    using Polygon = std::vector<PieceVertex>;
+    using Polygon = std::vector<PolygonVertex>;
     enum class Side { Above, Below };
 
-    void measure(std::span<const PieceVertex> polygon, std::uint32_t line);
-    void append_side(std::span<const PieceVertex> polygon,
+    void measure(std::span<const PolygonVertex> polygon, std::uint32_t line);
+    void append_side(std::span<const PolygonVertex> polygon,
                      std::uint32_t line,
                      Side side,
                      Polygon& target) const;
-    void remove_from(std::span<const PieceVertex> polygon, std::uint32_t first_line);
-    void add_next(std::span<const PieceVertex> polygon);
+    void remove_from(std::span<const PolygonVertex> polygon, std::uint32_t first_line);
+    void add_next(std::span<const PolygonVertex> polygon);
     void finish_pass();
 
     double margin_m_ = 0.0;
     std::vector<CutLine> lines_;
-    Polygon vertices_;  ///< piece by piece
+    Polygon vertices_;  ///< polygon by polygon
     std::vector<std::size_t> ends_;
     Polygon next_vertices_;
     std::vector<std::size_t> next_ends_;
@@ -85,20 +85,21 @@ class PieceCutter {
     Polygon inside_, rest_;
 };
 
-/// From gradients by the corners of pieces to those by the vertices that the cuts go through.
+/// From gradients by the corners of polygons to those by the vertices that the cuts go through.
 ///
 /// With D the heights of the element's corners above a line's plane, two lines meet at the
 /// barycentric coordinates c / (c_0 + c_1 + c_2), c = D_a x D_b. Heights are triple products of
 /// differences of points, up to a factor that moves no line, and their gradients cross products.
 class CutPullback {
  public:
-    /// lines   of a PieceCutter, which must outlive this
+    /// lines   of a PolygonClipper, which must outlive this
     void start(std::span<const CutLine> lines);
 
-    /// by_shares   gradients by the barycentric coordinates of a piece's corners
-    void add_piece(std::span<const PieceVertex> piece, std::span<const core::Vec3> by_shares);
+    /// by_barycentrics   gradients by the barycentric coordinates of a polygon's corners
+    void add_polygon(std::span<const PolygonVertex> polygon,
+                     std::span<const core::Vec3> by_barycentrics);
 
-    /// Adds the gradients of all pieces so far.
+    /// Adds the gradients of all polygons so far.
     ///
     /// ends         the pair's wall points
     /// corners      of the element

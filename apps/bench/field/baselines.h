@@ -37,12 +37,12 @@ bool enter_run(const FieldRun& run, Row& row) {
 ///
 /// Adapters are `apps/bench/field/peers/NAME.py`; the README there says what they read and write.
 /// A kind of run that took longer than it may is not tried again.
-class Contenders {
+class Baselines {
  public:
     /// peers     folder of the peers' Python environment; empty: there are none
     /// folder    where logs and requests go
     /// throws    core::Error when `peers` has no Python
-    Contenders(const std::string& peers, std::string folder, double limit_s);
+    Baselines(const std::string& peers, std::string folder, double limit_s);
 
     const std::string& folder() const { return folder_; }
 

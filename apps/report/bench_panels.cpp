@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/report/bench_cards.h"
+#include "apps/report/bench_panels.h"
 
 #include "apps/page/html.h"
 #include "renderer/core/settings/json_file.h"
@@ -80,48 +80,48 @@ bool is_collection_of_benches(const core::Json& json) {
     return json.is_object() && !json.empty() && is_bench(json.front());
 }
 
-BenchCard read_bench_card(const std::string& path, const core::Json& json) {
-    BenchCard card;
-    card.file = fs::path(path).filename().string();
-    card.facts = {{"Version", text_of(json, "program")},
-                  {"Machine", text_of(json, "machine")},
-                  {"Libraries", text_of(json, "libraries")}};
-    card.tables = all_tables(json);
-    return card;
+BenchPanel read_bench_panel(const std::string& path, const core::Json& json) {
+    BenchPanel panel;
+    panel.file = fs::path(path).filename().string();
+    panel.facts = {{"Version", text_of(json, "program")},
+                   {"Machine", text_of(json, "machine")},
+                   {"Libraries", text_of(json, "libraries")}};
+    panel.tables = all_tables(json);
+    return panel;
 }
 
-void give_figures_to_benches(std::vector<Figure>& figures, std::vector<BenchCard>& benches) {
+void give_figures_to_benches(std::vector<Figure>& figures, std::vector<BenchPanel>& benches) {
     std::set<std::string> drawn;  // .svg: these need no .png
     for (const Figure& figure : figures) {
         if (figure.mime_type == "image/svg+xml") drawn.insert(stem_of(figure.file));
     }
-    for (BenchCard& card : benches) {
+    for (BenchPanel& panel : benches) {
         std::erase_if(figures, [&](Figure& figure) {
             const std::string stem = stem_of(figure.file);
-            if (!stem.starts_with(stem_of(card.file))) return false;
+            if (!stem.starts_with(stem_of(panel.file))) return false;
             const bool again = figure.mime_type == "image/png" && drawn.contains(stem);
-            if (!again) card.figures.push_back(std::move(figure));
+            if (!again) panel.figures.push_back(std::move(figure));
             return true;
         });
     }
 }
 
-std::string benches_html(const std::vector<BenchCard>& benches) {
+std::string benches_html(const std::vector<BenchPanel>& benches) {
     std::string html;
-    for (const BenchCard& card : benches) {
-        html += fmt::format("<article><h3>{}</h3>\n", escape_html(card.file));
+    for (const BenchPanel& panel : benches) {
+        html += fmt::format("<article><h3>{}</h3>\n", escape_html(panel.file));
         const auto add_tables = [&](bool are_long) {
-            for (const Table& table : card.tables) {
+            for (const Table& table : panel.tables) {
                 if ((table.rows.size() >= kLongTable) == are_long) html += table_html(table);
             }
         };
         add_tables(false);
-        for (const Figure& figure : card.figures) {
+        for (const Figure& figure : panel.figures) {
             html += figure_html(embedded_image(figure.bytes, figure.mime_type, figure.file),
                                 escape_html(figure.file));
         }
         add_tables(true);
-        html += facts_html(card.facts) + "</article>\n";
+        html += facts_html(panel.facts) + "</article>\n";
     }
     return html;
 }

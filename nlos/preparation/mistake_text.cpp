@@ -16,7 +16,7 @@ struct FactorStory {
     const char* text;
 };
 constexpr FactorStory kFactorStories[] = {
-    {2.0, "as if half of each round trip had been stated"},
+    {2.0, "as if half of each round trip had been given"},
     {0.5, "as if round trips had been doubled once more"},
     {core::kSpeedOfLight * 1e-9, "as if ns had been taken for metres"},
     {1e9 / core::kSpeedOfLight, "as if metres had been taken for ns"},
@@ -87,15 +87,15 @@ std::string text_of_wall(const core::Capture& capture, double factor) {
 
 }  // namespace
 
-std::string describe_slip(const core::Capture& capture, const CaptureCorrection& correction) {
+std::string describe_mistake(const core::Capture& capture, const CaptureCorrection& correction) {
     if (correction.length_factor != 1.0) return text_of_lengths(capture, correction);
     if (correction.wall_factor != 1.0) return text_of_wall(capture, correction.wall_factor);
     if (correction.origin == core::OplOrigin::Device) {
-        return "path lengths look as if they included the legs to laser and detector: --set "
+        return "path lengths look as if they included the segments to laser and detector: --set "
                "capture.opl_origin=device";
     }
     if (correction.origin) {
-        return "path lengths look as if they excluded the legs to laser and detector: --set "
+        return "path lengths look as if they excluded the segments to laser and detector: --set "
                "capture.opl_origin=relay_wall";
     }
     if (correction.flip_t) return "time looks reversed: --set capture.flip_t=true";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Slips in describing captures of a few scatterers; those of rendered scenes are in
-// tests/apps/slips_test.cpp.
+// Mistakes in describing captures of a few scatterers; those of rendered scenes are in
+// tests/apps/mistakes_test.cpp.
 #include "nlos/preparation/capture_correction.h"
 #include "nlos/preparation/histogram_sample.h"
 #include "nlos/preparation/scatter_fit.h"
@@ -37,37 +37,37 @@ HistogramSample sample_of(const core::Capture& capture) {
     return *sample_histograms(capture, dark(capture), std::nullopt);
 }
 
-double share(const core::Capture& capture, const CaptureCorrection& correction) {
+double fraction(const core::Capture& capture, const CaptureCorrection& correction) {
     const HistogramSample sample = sample_of(capture);
-    return unexplained_share(sample, corrected_geometry(capture, sample, correction));
+    return unexplained_fraction(sample, corrected_geometry(capture, sample, correction));
 }
 
 TEST(ScatterFit, ExplainsAllButWhatIsMisdescribed) {
     const core::Capture capture = bar_capture(wall_grid({16, 16}, {0.06, 0.06}));
-    const double right = share(capture, {});
+    const double right = fraction(capture, {});
     EXPECT_LT(right, 0.2);
-    EXPECT_GT(share(capture, {.length_factor = 2.0}), 3.0 * right);
-    EXPECT_GT(share(capture, {.length_factor = 0.5}), 3.0 * right);
-    EXPECT_GT(share(capture, {.shift_m = 1.0}), 3.0 * right);
-    EXPECT_GT(share(capture, {.flip_t = true}), 3.0 * right);
+    EXPECT_GT(fraction(capture, {.length_factor = 2.0}), 3.0 * right);
+    EXPECT_GT(fraction(capture, {.length_factor = 0.5}), 3.0 * right);
+    EXPECT_GT(fraction(capture, {.shift_m = 1.0}), 3.0 * right);
+    EXPECT_GT(fraction(capture, {.flip_t = true}), 3.0 * right);
 }
 
 TEST(ScatterFit, DoesNotDependOnHowBrightPixelsAre) {
     core::Capture capture = bar_capture(wall_grid({12, 12}, {0.08, 0.08}));
-    const double even = share(capture, {});
+    const double even = fraction(capture, {});
     for (std::size_t pair = 0; pair < capture.scan.num_pairs(); ++pair) {
         for (float& value : capture.transient.histogram(pair)) {
             value *= 1.0F + static_cast<float>(pair % 5);
         }
     }
-    EXPECT_NEAR(share(capture, {}), even, 0.05);
+    EXPECT_NEAR(fraction(capture, {}), even, 0.05);
 }
 
 TEST(ScatterFit, HasTheSameBitsForAnyNumberOfThreads) {
     const core::Capture capture = bar_capture(wall_grid({12, 12}, {0.08, 0.08}));
     const auto with = [&](int threads) {
         const core::ThreadLimit limit(threads);
-        return share(capture, {});
+        return fraction(capture, {});
     };
     EXPECT_EQ(with(1), with(7));
 }
@@ -75,7 +75,8 @@ TEST(ScatterFit, HasTheSameBitsForAnyNumberOfThreads) {
 TEST(CaptureCorrection, WallAndLengthsAreOneButForSize) {
     const core::Capture capture = bar_capture(wall_grid({12, 12}, {0.08, 0.08}));
     EXPECT_TRUE(is_scale_free(capture.scan.wall()));
-    EXPECT_NEAR(share(capture, {.length_factor = 0.5}), share(capture, {.wall_factor = 2.0}), 1e-3);
+    EXPECT_NEAR(
+        fraction(capture, {.length_factor = 0.5}), fraction(capture, {.wall_factor = 2.0}), 1e-3);
 }
 
 TEST(CaptureCorrection, FlipsOfConfocalGridsAreMirrorImages) {
@@ -109,23 +110,23 @@ TEST(CaptureCorrection, FarFactorsAreListedOnlyForRangesOutOfProportion) {
     EXPECT_TRUE(has_far_factor());
 }
 
-TEST(SlipText, NamesTheOptionThatMends) {
+TEST(MistakeText, NamesTheOptionThatMends) {
     core::Capture capture = bar_capture(wall_grid({16, 16}, {0.06, 0.06}));
     capture.time_axis.bin_width_m = 12.0;
-    EXPECT_EQ(describe_slip(capture, {.length_factor = 1e-3}),
+    EXPECT_EQ(describe_mistake(capture, {.length_factor = 1e-3}),
               "lengths look 1000 times too long, as if ps had been taken for ns: --set "
               "capture.bin_width_m=0.012; or the wall looks 1000 times too small, as if km had "
               "been taken for metres: --set "
               "capture.wall_size_m=[900,900]");
     capture.scan.wall().opl_origin = core::OplOrigin::Device;
     capture.time_axis = {1.5, 0.024, 250};
-    EXPECT_EQ(describe_slip(capture, {.length_factor = 0.5}),
+    EXPECT_EQ(describe_mistake(capture, {.length_factor = 0.5}),
               "lengths look 2 times too long, as if round trips had been doubled once more: --set "
               "capture.bin_width_m=0.012 capture.opl_shift_m=-0.75");
-    EXPECT_EQ(describe_slip(capture, {.wall_factor = 2.0}),
+    EXPECT_EQ(describe_mistake(capture, {.wall_factor = 2.0}),
               "the wall looks 2 times too small, as if half its width had been taken for the "
               "width: --set capture.wall_size_m=[1.8,1.8]");
-    EXPECT_EQ(describe_slip(capture, {.shift_m = -1.3}),
+    EXPECT_EQ(describe_mistake(capture, {.shift_m = -1.3}),
               "time zero looks about 1.3 m too early: --set capture.opl_shift_m=-1.3");
 }
 
@@ -142,24 +143,24 @@ TEST(DirectReturn, IsFoundWithItsOffset) {
     EXPECT_EQ(direct->end_bins, std::vector<std::size_t>(196, 1));
 }
 
-TEST(SlipEvidence, IsNothingForFewPairsForDarknessAndForLikeHistograms) {
+TEST(MistakeEvidence, IsNothingForFewPairsForDarknessAndForLikeHistograms) {
     const core::Capture few = bar_capture(wall_grid({2, 4}, {0.2, 0.2}));
-    EXPECT_FALSE(slip_evidence(few, dark(few)));
+    EXPECT_FALSE(mistake_evidence(few, dark(few)));
     core::Capture capture = bar_capture(wall_grid({12, 12}, {0.08, 0.08}));
     for (std::size_t pair = 1; pair < capture.scan.num_pairs(); ++pair) {
         std::ranges::copy(capture.transient.histogram(0),
                           capture.transient.histogram(pair).begin());
     }
-    EXPECT_FALSE(slip_evidence(capture, dark(capture)));
+    EXPECT_FALSE(mistake_evidence(capture, dark(capture)));
     std::ranges::fill(capture.transient.values(), 0.0F);
-    EXPECT_FALSE(slip_evidence(capture, dark(capture)));
+    EXPECT_FALSE(mistake_evidence(capture, dark(capture)));
 }
 
-TEST(SlipEvidence, OfHugeAndTinyNumbersIsFinite) {
+TEST(MistakeEvidence, OfHugeAndTinyNumbersIsFinite) {
     for (const double factor : {1e-300, 1e-30, 1e30, 1e300}) {
         core::Capture capture = bar_capture(wall_grid({12, 12}, {0.08, 0.08}));
         capture.time_axis.bin_width_m *= factor;
-        const auto evidence = slip_evidence(capture, dark(capture));
+        const auto evidence = mistake_evidence(capture, dark(capture));
         ASSERT_TRUE(evidence);
         EXPECT_TRUE(std::isfinite(evidence->given));
         for (const auto& tried : evidence->corrections) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "calib/forward/path_legs.h"
+#include "calib/forward/path_segments.h"
 #include "renderer/core/capture/time_axis.h"
 #include "renderer/triangle/triangle_histogram.h"
 
@@ -32,37 +32,37 @@ struct ShapeGradients {
 struct PairLight {
     std::array<MovedWallPoint, 2> ends;  ///< light, sensor
     bool is_confocal = true;             ///< both ends are the same
-    double device_legs_m = 0.0;
+    double device_segments_m = 0.0;
     double radiance_factor = 1.0;  ///< of an albedo of 1
     double sigma_m = 0.0;          ///< of a Gaussian response, in path length
     core::TimeAxis axis;
 };
 
 /// Barycentric coordinates of a part's corners in its element.
-using PartShares = std::array<core::Vec3, 3>;
+using PartBarycentrics = std::array<core::Vec3, 3>;
 
 /// Third bounces by way of triangular parts of elements, and their gradients in reverse.
-class PieceKernel {
+class PartKernel {
  public:
     /// light   must outlive this
-    explicit PieceKernel(const PairLight& light) : light_(light) {}
+    explicit PartKernel(const PairLight& light) : light_(light) {}
 
     /// Adds the histogram of a part.
     void add(const ElementShape& element,
-             const PartShares& shares,
+             const PartBarycentrics& barycentrics,
              double albedo,
              std::span<double> histogram);
 
     /// Adds the gradients of the inner product of a part's histogram with `by_value`.
     ///
-    /// by_shares   gradients by `shares`
-    /// returns     the gradient by the albedo
+    /// by_barycentrics   gradients by `barycentrics`
+    /// returns           the gradient by the albedo
     double pull(const ElementShape& element,
-                const PartShares& shares,
+                const PartBarycentrics& barycentrics,
                 double albedo,
                 std::span<const double> by_value,
                 ShapeGradients& by_shape,
-                PartShares& by_shares);
+                PartBarycentrics& by_barycentrics);
 
  private:
     using Paths = std::array<Path, 6>;
@@ -71,7 +71,7 @@ class PieceKernel {
                  const core::Vec3& normal,
                  renderer::Gradients gradients) const;
     Paths find_paths(const ElementShape& element,
-                     const PartShares& shares,
+                     const PartBarycentrics& barycentrics,
                      renderer::Gradients gradients) const;
 
     const PairLight& light_;

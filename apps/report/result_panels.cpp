@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/report/result_cards.h"
+#include "apps/report/result_panels.h"
 
 #include "apps/estimate_text.h"
 #include "calib/fit_file.h"
@@ -125,7 +125,7 @@ std::vector<Fact> volume_facts(const nlos::Reconstruction& result) {
     return facts;
 }
 
-std::string place_text(const core::Vec3& position_m, const core::Vec3& sigma_m) {
+std::string position_text(const core::Vec3& position_m, const core::Vec3& sigma_m) {
     std::string text;
     for (int a = 0; a < 3; ++a) {
         text += (a == 0 ? "" : ", ") + estimate_text(1e3 * position_m[a], 1e3 * sigma_m[a]);
@@ -136,7 +136,7 @@ std::string place_text(const core::Vec3& position_m, const core::Vec3& sigma_m) 
 std::vector<Fact> fit_facts(const calib::FitResult& fit, const core::Json& json) {
     std::vector<Fact> facts;
     for (const calib::FittedObject& object : fit.objects) {
-        std::string text = place_text(object.position_m, object.position_sigma_m);
+        std::string text = position_text(object.position_m, object.position_sigma_m);
         if (object.rotation_sigma_deg.norm() > 0.0) {
             text += ", turned +- " + short_number(object.rotation_sigma_deg.norm()) + " deg";
         }
@@ -147,7 +147,7 @@ std::vector<Fact> fit_facts(const calib::FitResult& fit, const core::Json& json)
     }
     for (std::size_t i = 0; i < fit.points.size(); ++i) {
         facts.emplace_back(fmt::format("Point {}", i),
-                           place_text(fit.points[i].position_m, fit.points[i].position_sigma_m));
+                           position_text(fit.points[i].position_m, fit.points[i].position_sigma_m));
     }
     const auto number = [&](const char* key) {
         const auto it = json.find(key);
@@ -188,51 +188,51 @@ std::string picture_beside(const std::string& path) {
     return fs::exists(picture) ? read_bytes(picture.string()) : "";
 }
 
-ResultCard capture_card(const std::string& path, const core::Capture& capture) {
-    ResultCard card;
-    card.file = fs::path(path).filename().string();
-    card.picture_png = nlos::encode_panels(nlos::capture_panels(capture), kCaptureColumns);
-    card.facts = capture_facts(capture);
-    card.notes = capture.notes;
-    if (!capture.scene_info->empty()) card.settings = *capture.scene_info;
-    return card;
+ResultPanel capture_panel(const std::string& path, const core::Capture& capture) {
+    ResultPanel panel;
+    panel.file = fs::path(path).filename().string();
+    panel.picture_png = nlos::encode_panels(nlos::capture_panels(capture), kCaptureColumns);
+    panel.facts = capture_facts(capture);
+    panel.notes = capture.notes;
+    if (!capture.scene_info->empty()) panel.settings = *capture.scene_info;
+    return panel;
 }
 
-ResultCard volume_card(const std::string& path, const nlos::Reconstruction& result) {
-    ResultCard card;
-    card.file = fs::path(path).filename().string();
-    card.picture_png = nlos::encode_panels(nlos::volume_panels(result), kVolumeColumns);
-    card.facts = volume_facts(result);
-    card.settings = core::write_value(result.settings);
-    return card;
+ResultPanel volume_panel(const std::string& path, const nlos::Reconstruction& result) {
+    ResultPanel panel;
+    panel.file = fs::path(path).filename().string();
+    panel.picture_png = nlos::encode_panels(nlos::volume_panels(result), kVolumeColumns);
+    panel.facts = volume_facts(result);
+    panel.settings = core::write_value(result.settings);
+    return panel;
 }
 
-ResultCard fit_card(const std::string& path, const core::Json& json) {
-    ResultCard card;
-    card.file = fs::path(path).filename().string();
-    card.facts = fit_facts(calib::read_fit(path), json);
-    card.picture_png = picture_beside(path);
+ResultPanel fit_panel(const std::string& path, const core::Json& json) {
+    ResultPanel panel;
+    panel.file = fs::path(path).filename().string();
+    panel.facts = fit_facts(calib::read_fit(path), json);
+    panel.picture_png = picture_beside(path);
     for (const char* key : {"warnings", "unidentifiable"}) {
         for (const core::Json& text : json.value(key, core::Json::array())) {
             const std::string prefix =
                 std::string(key) == "warnings" ? "Warning: " : "Unidentifiable: ";
-            card.notes.push_back(prefix + text.get<std::string>());
+            panel.notes.push_back(prefix + text.get<std::string>());
         }
     }
     for (const core::Json& pair : json.value("correlations", core::Json::array())) {
-        card.notes.push_back(fmt::format("Correlated: {} with {} ({:.3f})",
-                                         pair.value("a", ""),
-                                         pair.value("b", ""),
-                                         pair.value("value", 0.0)));
+        panel.notes.push_back(fmt::format("Correlated: {} with {} ({:.3f})",
+                                          pair.value("a", ""),
+                                          pair.value("b", ""),
+                                          pair.value("value", 0.0)));
     }
-    card.settings = json;
-    return card;
+    panel.settings = json;
+    return panel;
 }
 
-ResultCard track_card(const std::string& path, const core::Json& json) {
+ResultPanel track_panel(const std::string& path, const core::Json& json) {
     const std::vector<calib::TrackedFrame> frames = calib::read_track(path);
-    ResultCard card;
-    card.file = fs::path(path).filename().string();
+    ResultPanel panel;
+    panel.file = fs::path(path).filename().string();
     std::size_t named = 0;
     std::size_t most = 0;
     std::vector<double> sigmas_m;
@@ -245,30 +245,30 @@ ResultCard track_card(const std::string& path, const core::Json& json) {
             if (target.covariance_m2) sigmas_m.push_back(std::sqrt(target.covariance_m2->trace()));
         }
     }
-    card.facts.emplace_back("frames", std::to_string(frames.size()));
-    card.facts.emplace_back(
+    panel.facts.emplace_back("frames", std::to_string(frames.size()));
+    panel.facts.emplace_back(
         "time", fmt::format("{:.2f} to {:.2f} s", frames.front().time_s, frames.back().time_s));
-    card.facts.emplace_back("frames with a target", std::to_string(named));
-    card.facts.emplace_back("targets at a time", fmt::format("at most {}", most));
+    panel.facts.emplace_back("frames with a target", std::to_string(named));
+    panel.facts.emplace_back("targets at a time", fmt::format("at most {}", most));
     if (named > 0) {
         for (const int axis : {0, 1, 2}) {
-            card.facts.emplace_back(
+            panel.facts.emplace_back(
                 std::string(1, "xyz"[axis]),
                 fmt::format("{:.2f} to {:.2f} m", box.min()[axis], box.max()[axis]));
         }
     }
     if (!sigmas_m.empty()) {
-        card.facts.emplace_back("stated error, median",
-                                short_number(core::upper_median(sigmas_m)) + " m");
+        panel.facts.emplace_back("reported error, median",
+                                 short_number(core::upper_median(sigmas_m)) + " m");
     }
-    card.picture_png = picture_beside(path);
+    panel.picture_png = picture_beside(path);
     for (const core::Json& text : json.value("warnings", core::Json::array())) {
-        if (text.is_string()) card.notes.push_back("Warning: " + text.get<std::string>());
+        if (text.is_string()) panel.notes.push_back("Warning: " + text.get<std::string>());
     }
     for (const char* key : {"settings", "version", "command"}) {
-        if (json.contains(key)) card.settings[key] = json[key];
+        if (json.contains(key)) panel.settings[key] = json[key];
     }
-    return card;
+    return panel;
 }
 
 }  // namespace apps

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "calib/adjoint/piece_kernel.h"
+#include "calib/adjoint/part_kernel.h"
 
-#include "calib/forward/knot_changes.h"
+#include "calib/forward/knot_derivatives.h"
 
 namespace calib {
 namespace {
@@ -9,8 +9,8 @@ namespace {
 using core::Vec3;
 using renderer::Gradients;
 
-// A part's share of the element's area.
-double share_of_area(const PartShares& s) {
+// A part's fraction of the element's area.
+double fraction_of_area(const PartBarycentrics& s) {
     return s[0].dot(s[1].cross(s[2]));
 }
 
@@ -45,19 +45,19 @@ std::array<Vec3, 3> ShapeGradients::by_corners(const ElementShape& shape) const 
     return {corners[0] - by_edge1 - by_edge2, corners[1] + by_edge1, corners[2] + by_edge2};
 }
 
-Path PieceKernel::path_to(const Vec3& x, const Vec3& normal, Gradients gradients) const {
-    const Leg sensor = make_leg(light_.ends[1], x, normal, gradients);
-    if (light_.is_confocal) return join_legs(sensor, sensor, gradients);
-    return join_legs(make_leg(light_.ends[0], x, normal, gradients), sensor, gradients);
+Path PartKernel::path_to(const Vec3& x, const Vec3& normal, Gradients gradients) const {
+    const Segment sensor = make_segment(light_.ends[1], x, normal, gradients);
+    if (light_.is_confocal) return join_segments(sensor, sensor, gradients);
+    return join_segments(make_segment(light_.ends[0], x, normal, gradients), sensor, gradients);
 }
 
-PieceKernel::Paths PieceKernel::find_paths(const ElementShape& element,
-                                           const PartShares& shares,
-                                           Gradients gradients) const {
+PartKernel::Paths PartKernel::find_paths(const ElementShape& element,
+                                         const PartBarycentrics& barycentrics,
+                                         Gradients gradients) const {
     std::array<Vec3, 3> x;
     for (std::size_t j = 0; j < 3; ++j) {
-        x[j] = shares[j][0] * element.corners[0] + shares[j][1] * element.corners[1] +
-               shares[j][2] * element.corners[2];
+        x[j] = barycentrics[j][0] * element.corners[0] + barycentrics[j][1] * element.corners[1] +
+               barycentrics[j][2] * element.corners[2];
     }
     Paths paths;
     for (std::size_t j = 0; j < 3; ++j) {
@@ -67,29 +67,30 @@ PieceKernel::Paths PieceKernel::find_paths(const ElementShape& element,
     return paths;
 }
 
-void PieceKernel::add(const ElementShape& element,
-                      const PartShares& shares,
-                      double albedo,
-                      std::span<double> histogram) {
-    const double factor = light_.radiance_factor * albedo * element.area_m2 * share_of_area(shares);
-    const KnotFit fit =
-        fit_knots(find_paths(element, shares, Gradients::Without), light_.device_legs_m, factor);
+void PartKernel::add(const ElementShape& element,
+                     const PartBarycentrics& barycentrics,
+                     double albedo,
+                     std::span<double> histogram) {
+    const double factor =
+        light_.radiance_factor * albedo * element.area_m2 * fraction_of_area(barycentrics);
+    const KnotFit fit = fit_knots(
+        find_paths(element, barycentrics, Gradients::Without), light_.device_segments_m, factor);
     evaluate_triangle(fit.knots(), light_.sigma_m, light_.axis, Gradients::Without, bins_);
     double* target = histogram.data() + bins_.first_bin;
     for (const auto& bin : bins_.bins) *target++ += bin.slots[0];
 }
 
-double PieceKernel::pull(const ElementShape& element,
-                         const PartShares& shares,
-                         double albedo,
-                         std::span<const double> by_value,
-                         ShapeGradients& by_shape,
-                         PartShares& by_shares) {
-    const double share = share_of_area(shares);
-    const double per_area = light_.radiance_factor * share;
+double PartKernel::pull(const ElementShape& element,
+                        const PartBarycentrics& barycentrics,
+                        double albedo,
+                        std::span<const double> by_value,
+                        ShapeGradients& by_shape,
+                        PartBarycentrics& by_barycentrics) {
+    const double fraction = fraction_of_area(barycentrics);
+    const double per_area = light_.radiance_factor * fraction;
     const double factor = per_area * element.area_m2;
-    const Paths paths = find_paths(element, shares, Gradients::With);
-    const KnotFit fit = fit_knots(paths, light_.device_legs_m, factor);
+    const Paths paths = find_paths(element, barycentrics, Gradients::With);
+    const KnotFit fit = fit_knots(paths, light_.device_segments_m, factor);
     evaluate_triangle(fit.knots(), light_.sigma_m, light_.axis, Gradients::With, bins_);
     const auto sums = contract(bins_, by_value);
     const NodeGradients by_nodes =
@@ -105,14 +106,15 @@ double PieceKernel::pull(const ElementShape& element,
         by_factor += by_nodes.weight[i] * paths[i].factor;
     }
     by_shape.area_m2 += by_factor * per_area;
-    const double by_share = by_factor * light_.radiance_factor * element.area_m2;
+    const double by_fraction = by_factor * light_.radiance_factor * element.area_m2;
     for (std::size_t j = 0; j < 3; ++j) {
         const Vec3 by_x = by_node[j] + 0.5 * (by_node[3 + j] + by_node[3 + (j + 2) % 3]);
-        by_shares[j] = by_share * shares[(j + 1) % 3].cross(shares[(j + 2) % 3]);
+        by_barycentrics[j] =
+            by_fraction * barycentrics[(j + 1) % 3].cross(barycentrics[(j + 2) % 3]);
         for (Eigen::Index i = 0; i < 3; ++i) {
             const auto k = static_cast<std::size_t>(i);
-            by_shape.corners[k] += shares[j][i] * by_x;
-            by_shares[j][i] += by_x.dot(element.corners[k] - element.corners[0]);
+            by_shape.corners[k] += barycentrics[j][i] * by_x;
+            by_barycentrics[j][i] += by_x.dot(element.corners[k] - element.corners[0]);
         }
     }
     return sums[0];

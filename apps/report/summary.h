@@ -8,7 +8,7 @@
 namespace apps {
 
 /// What a page is about, in two sentences: what was measured and found, and what the page holds.
-std::string lead_text(const ResultsFolder& results);
+std::string summary_text(const ResultsFolder& results);
 
 /// What the 3-D view shows.
 std::string space_caption(const ResultsFolder& results);

@@ -18,7 +18,7 @@ namespace {
 using core::Vec3;
 using renderer::Estimator;
 
-const core::TimeAxis kStatedAxis{1.0, 0.02, 96};
+const core::TimeAxis kReportedAxis{1.0, 0.02, 96};
 
 core::WallScan scan_of(int points) {
     std::vector<Vec3> positions;
@@ -53,10 +53,10 @@ core::Transient reference_of(const renderer::Scene& scene, const core::WallScan&
     renderer::RenderSettings settings;
     settings.method = Estimator::ThirdBounce;
     settings.target_error = 2e-3;
-    return renderer::render(scene, scan, {kStatedAxis, {}}, settings, {}).capture.transient;
+    return renderer::render(scene, scan, {kReportedAxis, {}}, settings, {}).capture.transient;
 }
 
-TEST(StatedError, NoiseFromSumsIsThatFromEveryVariance) {
+TEST(ReportedError, NoiseFromSumsIsThatFromEveryVariance) {
     constexpr int kBins = 5;
     constexpr int kPasses = 6;
     renderer::TransientAccumulator sums(3, kBins, 2, true);
@@ -97,7 +97,7 @@ TEST_P(SampledEstimator, ReachesItsTargetAndKnowsItsError) {
     renderer::RenderSettings settings;
     settings.method = GetParam();
     settings.target_error = kTarget;
-    const auto result = renderer::render(scene, scan, {kStatedAxis, {}}, settings, {});
+    const auto result = renderer::render(scene, scan, {kReportedAxis, {}}, settings, {});
     const double error = relative_distance(result.capture.transient, reference_of(scene, scan));
     EXPECT_LT(error, 1.25 * kTarget);
     ASSERT_TRUE(result.estimated_error.has_value());
@@ -105,7 +105,7 @@ TEST_P(SampledEstimator, ReachesItsTargetAndKnowsItsError) {
     EXPECT_NEAR(*result.estimated_error, error, 0.25 * error);
 }
 
-INSTANTIATE_TEST_SUITE_P(StatedError,
+INSTANTIATE_TEST_SUITE_P(ReportedError,
                          SampledEstimator,
                          testing::Values(Estimator::Path,
                                          Estimator::Ellipsoidal,
@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(StatedError,
 
 // A pass spreads its samples evenly: four times as many leave far less than half of the error,
 // which is known all the same. Passes that tell a variance of each bin are short, and lose that.
-TEST(StatedError, LongPassesHaveLessNoise) {
+TEST(ReportedError, LongPassesHaveLessNoise) {
     const core::WallScan scan = scan_of(16);
     const renderer::Scene scene = facing_scene(scan);
     const core::Transient reference = reference_of(scene, scan);
@@ -123,7 +123,7 @@ TEST(StatedError, LongPassesHaveLessNoise) {
     const auto error_of = [&](int samples, bool variance) {
         settings.samples = samples;
         settings.variance = variance;
-        const auto result = renderer::render(scene, scan, {kStatedAxis, {}}, settings, {});
+        const auto result = renderer::render(scene, scan, {kReportedAxis, {}}, settings, {});
         const double error = relative_distance(result.capture.transient, reference);
         EXPECT_NEAR(*result.estimated_error, error, 0.15 * error);
         return error;
@@ -133,7 +133,7 @@ TEST(StatedError, LongPassesHaveLessNoise) {
     EXPECT_GT(error_of(32'768, true), 0.45 * few);
 }
 
-TEST(StatedError, AutoReachesItWithHigherOrders) {
+TEST(ReportedError, AutoReachesItWithHigherOrders) {
     constexpr double kTarget = 0.05;
     const core::WallScan scan = scan_of(8);
     const renderer::Scene scene = facing_scene(scan);
@@ -141,11 +141,11 @@ TEST(StatedError, AutoReachesItWithHigherOrders) {
     settings.max_bounces = 5;
     settings.target_error = 0.01;
     settings.method = Estimator::Path;
-    const auto reference = renderer::render(scene, scan, {kStatedAxis, {}}, settings, {});
+    const auto reference = renderer::render(scene, scan, {kReportedAxis, {}}, settings, {});
     settings.method = Estimator::Auto;
     settings.target_error = kTarget;
     settings.seed = 1;
-    const auto result = renderer::render(scene, scan, {kStatedAxis, {}}, settings, {});
+    const auto result = renderer::render(scene, scan, {kReportedAxis, {}}, settings, {});
     EXPECT_LE(*result.estimated_error, kTarget);
     EXPECT_LT(relative_distance(result.capture.transient, reference.capture.transient),
               std::hypot(1.25 * kTarget, 0.0125));
@@ -153,7 +153,7 @@ TEST(StatedError, AutoReachesItWithHigherOrders) {
 
 // Higher orders are averaged over the grid: half of the samples suffice, and the error stays what
 // it is said to be. The direct return keeps its bin.
-TEST(StatedError, AutoAveragesHigherOrdersOverNeighbours) {
+TEST(ReportedError, AutoAveragesHigherOrdersOverNeighbours) {
     constexpr double kTarget = 0.01;
     core::WallScan scan = scan_of(16);
     scan.sensing.grid = {16, 16};
@@ -185,7 +185,7 @@ TEST(StatedError, AutoAveragesHigherOrdersOverNeighbours) {
     EXPECT_EQ(result.capture.transient.histogram(7)[1], 0.0F);
 }
 
-TEST(StatedError, OrdersAreLeftOutWhenTheyAreBelowWhatIsAllowed) {
+TEST(ReportedError, OrdersAreLeftOutWhenTheyAreBelowWhatIsAllowed) {
     const core::WallScan scan = scan_of(8);
     const renderer::Scene scene = facing_scene(scan);
     renderer::RenderSettings settings;
@@ -196,7 +196,7 @@ TEST(StatedError, OrdersAreLeftOutWhenTheyAreBelowWhatIsAllowed) {
     // The product of two independent truths has no bias from their noise.
     std::array<core::Capture, 2> truths;
     for (core::Capture& truth : truths) {
-        truth = renderer::render(scene, scan, {kStatedAxis, {}}, settings, {}).capture;
+        truth = renderer::render(scene, scan, {kReportedAxis, {}}, settings, {}).capture;
         ++settings.seed;
     }
     const auto tail_from = [&](std::size_t order) {
@@ -213,19 +213,20 @@ TEST(StatedError, OrdersAreLeftOutWhenTheyAreBelowWhatIsAllowed) {
         return std::sqrt(product);
     };
     for (int order = 6; order > 3; --order) {
-        const double share = tail_from(static_cast<std::size_t>(order)) / tail_from(1);
+        const double fraction = tail_from(static_cast<std::size_t>(order)) / tail_from(1);
         const auto [last, left_out] = renderer::find_bounce_truncation(
-            {scene, scan, {kStatedAxis, {}}, settings, {}}, 2.5 * share);
-        EXPECT_LT(last, order) << "share " << share;
-        EXPECT_GE(left_out, 0.95 * share);
-        EXPECT_LE(left_out, 2.5 * share);
+            {scene, scan, {kReportedAxis, {}}, settings, {}}, 2.5 * fraction);
+        EXPECT_LT(last, order) << "fraction " << fraction;
+        EXPECT_GE(left_out, 0.95 * fraction);
+        EXPECT_LE(left_out, 2.5 * fraction);
     }
     EXPECT_EQ(
-        renderer::find_bounce_truncation({scene, scan, {kStatedAxis, {}}, settings, {}}, 0.0).last,
+        renderer::find_bounce_truncation({scene, scan, {kReportedAxis, {}}, settings, {}}, 0.0)
+            .last,
         6);
 }
 
-TEST(StatedError, AutoSaysWhichOrdersItLeavesOut) {
+TEST(ReportedError, AutoSaysWhichOrdersItLeavesOut) {
     const core::WallScan scan = scan_of(4);
     // A single plane lights nothing but the wall: there is no order 4 to 6 without the wall.
     const renderer::Scene scene({{test_support::parallelogram_object(
@@ -236,17 +237,17 @@ TEST(StatedError, AutoSaysWhichOrdersItLeavesOut) {
     renderer::RenderSettings settings;
     settings.max_bounces = 6;
     settings.target_error = 0.05;
-    const auto result = renderer::render(scene, scan, {kStatedAxis, {}}, settings, {});
+    const auto result = renderer::render(scene, scan, {kReportedAxis, {}}, settings, {});
     ASSERT_TRUE(result.left_out);
     EXPECT_EQ(result.left_out->last, 6);
     EXPECT_GE(*result.estimated_error, result.left_out->error);
     settings.target_error.reset();
-    EXPECT_FALSE(renderer::render(scene, scan, {kStatedAxis, {}}, settings, {}).left_out);
+    EXPECT_FALSE(renderer::render(scene, scan, {kReportedAxis, {}}, settings, {}).left_out);
 }
 
 // Few large facets need few elements: however coarse the target, the error is not 0, and what is
-// stated bounds it.
-TEST(StatedError, CoarseTargetsOnLargeFacetsStateAnError) {
+// reported bounds it.
+TEST(ReportedError, CoarseTargetsOnLargeFacetsReportAnError) {
     const core::WallScan scan = scan_of(8);
     const renderer::Scene scene(
         {{test_support::parallelogram_object({{-0.2, -0.2, 0.6}, {0.4, 0.05, 0}, {0, 0.4, 0.1}})},
@@ -258,7 +259,7 @@ TEST(StatedError, CoarseTargetsOnLargeFacetsStateAnError) {
         renderer::RenderSettings settings;
         settings.method = Estimator::ThirdBounce;
         settings.target_error = target;
-        const auto result = renderer::render(scene, scan, {kStatedAxis, {}}, settings, {});
+        const auto result = renderer::render(scene, scan, {kReportedAxis, {}}, settings, {});
         const double error = relative_distance(result.capture.transient, reference);
         EXPECT_LE(error, target);
         EXPECT_LE(error, *result.estimated_error + 2e-3) << target;
@@ -266,7 +267,7 @@ TEST(StatedError, CoarseTargetsOnLargeFacetsStateAnError) {
     }
 }
 
-TEST(StatedError, RestirStatesOneForFewSamples) {
+TEST(ReportedError, RestirReportsOneForFewSamples) {
     const core::WallScan scan = scan_of(6);
     const renderer::Scene scene = facing_scene(scan);
     const core::TimeAxis gate{1.5, 0.3, 1};
@@ -286,25 +287,25 @@ TEST(StatedError, RestirStatesOneForFewSamples) {
 }
 
 // More passes would not help.
-TEST(StatedError, AnErrorThatIsKnownToBeLargerDoesNotKeepPassesGoing) {
+TEST(ReportedError, AnErrorThatIsKnownToBeLargerDoesNotKeepPassesGoing) {
     renderer::RenderSettings settings;
     settings.target_error = 0.1;
     const core::TimeAxis axis{0.0, 1.0, 1};
     for (const double known_error : {4.0, std::numeric_limits<double>::infinity()}) {
         renderer::TransientAccumulator sums(1, 1, 1, false);
         renderer::StoppingRule rule(settings, 1, {nullptr, known_error, 0.0});
-        double share = 0.0;
-        for (int pass = 1; pass <= 64 && share < 1.0; ++pass) {
+        double fraction = 0.0;
+        for (int pass = 1; pass <= 64 && fraction < 1.0; ++pass) {
             renderer::PassHistogram histogram({axis, {}}, renderer::GateShape::Box, 1);
             histogram.add_to_bin(0, 0, 0.0, pass % 2 == 0 ? 1.1 : 0.9);
             sums.add_pass(0, histogram);
-            share = rule.share_done(pass, 0.0, sums);
+            fraction = rule.fraction_done(pass, 0.0, sums);
         }
-        EXPECT_EQ(share, 1.0) << known_error;
+        EXPECT_EQ(fraction, 1.0) << known_error;
     }
 }
 
-TEST(StatedError, FramesThatShareTheirPastRefuseOne) {
+TEST(ReportedError, FramesThatShareTheirPastRefuseOne) {
     const core::WallScan scan = scan_of(2);
     renderer::RenderSettings settings;
     settings.method = Estimator::Restir;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "apps/report/sweep_cards.h"
+#include "apps/report/sweep_panels.h"
 
 #include "apps/page/html.h"
-#include "apps/report/result_cards.h"
+#include "apps/report/result_panels.h"
 #include "renderer/core/settings/json_file.h"
 
 #include <fmt/core.h>
@@ -95,29 +95,29 @@ bool is_sweep(const Json& json) {
     return std::ranges::all_of(json["runs"], [](const Json& row) { return row.is_object(); });
 }
 
-void give_figures_to_sweeps(std::vector<Figure>& figures, std::vector<SweepCard>& sweeps) {
-    for (SweepCard& card : sweeps) {
+void give_figures_to_sweeps(std::vector<Figure>& figures, std::vector<SweepPanel>& sweeps) {
+    for (SweepPanel& panel : sweeps) {
         std::set<std::string> stems;
-        for (const Json& name : card.content["plots"]) stems.insert(text_of_cell(name));
+        for (const Json& name : panel.content["plots"]) stems.insert(text_of_cell(name));
         std::erase_if(figures, [&](Figure& figure) {
             const std::filesystem::path file = figure.file;
             if (!stems.contains(file.stem().string())) return false;
-            if (file.extension() == ".svg") card.figures.push_back(std::move(figure));
+            if (file.extension() == ".svg") panel.figures.push_back(std::move(figure));
             return true;
         });
     }
 }
 
-std::string sweeps_html(const std::vector<SweepCard>& sweeps) {
+std::string sweeps_html(const std::vector<SweepPanel>& sweeps) {
     std::string html;
-    for (const SweepCard& card : sweeps) {
-        html += fmt::format("<article><h3>{}</h3>\n", escape_html(card.file));
-        html += facts_html({{"Scene", text_of_cell(card.content["sweep"].value("scene", Json()))},
-                            {"Runs", fmt::format("{}", card.content["runs"].size())},
-                            {"Failed", text_of_cell(card.content.value("num_failed", Json(0)))},
-                            {"Version", text_of_cell(card.content.value("program", Json()))}});
-        html += "</article>\n" + runs_table(card.content) + failures_html(card.content);
-        for (const Figure& figure : card.figures) {
+    for (const SweepPanel& panel : sweeps) {
+        html += fmt::format("<article><h3>{}</h3>\n", escape_html(panel.file));
+        html += facts_html({{"Scene", text_of_cell(panel.content["sweep"].value("scene", Json()))},
+                            {"Runs", fmt::format("{}", panel.content["runs"].size())},
+                            {"Failed", text_of_cell(panel.content.value("num_failed", Json(0)))},
+                            {"Version", text_of_cell(panel.content.value("program", Json()))}});
+        html += "</article>\n" + runs_table(panel.content) + failures_html(panel.content);
+        for (const Figure& figure : panel.figures) {
             html += figure_html(embedded_image(figure.bytes, figure.mime_type, figure.file),
                                 escape_html(figure.file));
         }

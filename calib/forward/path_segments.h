@@ -8,9 +8,9 @@
 
 namespace calib {
 
-/// One leg between a wall point w and a surface point x, d = x - w: its length, the factor
+/// One segment between a wall point w and a surface point x, d = x - w: its length, the factor
 /// (n_w.d) |n.d| / |d|^4 and the gradients of both. The gradients by w are minus those by x.
-struct Leg {
+struct Segment {
     double length = 0.0;
     double factor = 0.0;
     double side = 0.0;          ///< sign of n.d
@@ -20,49 +20,50 @@ struct Leg {
     core::Vec3 by_wall_normal;  ///< by n_w
 };
 
-/// The leg to a point x of a surface with this normal; gradients only with gradients.
-inline Leg make_leg(const MovedWallPoint& wall,
-                    const core::Vec3& x,
-                    const core::Vec3& normal,
-                    renderer::Gradients gradients) {
+/// The segment to a point x of a surface with this normal; gradients only with gradients.
+inline Segment make_segment(const MovedWallPoint& wall,
+                            const core::Vec3& x,
+                            const core::Vec3& normal,
+                            renderer::Gradients gradients) {
     const core::Vec3 d = x - wall.position;
     const double squared = d.squaredNorm();
     const double front = wall.normal.dot(d);
     const double facing = normal.dot(d);
-    Leg leg;
-    leg.length = std::sqrt(squared);
-    leg.direction = d / leg.length;
-    leg.side = facing < 0.0 ? -1.0 : 1.0;
+    Segment segment;
+    segment.length = std::sqrt(squared);
+    segment.direction = d / segment.length;
+    segment.side = facing < 0.0 ? -1.0 : 1.0;
     const double per4 = 1.0 / (squared * squared);
     const bool is_in_front = front > 0.0;
-    leg.factor = is_in_front ? front * std::abs(facing) * per4 : 0.0;
-    if (gradients == renderer::Gradients::Without) return leg;
+    segment.factor = is_in_front ? front * std::abs(facing) * per4 : 0.0;
+    if (gradients == renderer::Gradients::Without) return segment;
     if (!is_in_front) {
-        leg.by_position = leg.by_normal = leg.by_wall_normal = core::Vec3::Zero();
-        return leg;
+        segment.by_position = segment.by_normal = segment.by_wall_normal = core::Vec3::Zero();
+        return segment;
     }
-    leg.by_position = per4 * (std::abs(facing) * wall.normal + front * leg.side * normal) -
-                      4.0 * leg.factor / squared * d;
-    leg.by_normal = front * leg.side * per4 * d;
-    leg.by_wall_normal = std::abs(facing) * per4 * d;
-    return leg;
+    segment.by_position = per4 * (std::abs(facing) * wall.normal + front * segment.side * normal) -
+                          4.0 * segment.factor / squared * d;
+    segment.by_normal = front * segment.side * per4 * d;
+    segment.by_wall_normal = std::abs(facing) * per4 * d;
+    return segment;
 }
 
-/// The leg to an isotropic scatterer, whose factor is (n_w.d) / |d|^3. Leaves `by_normal` unset.
-inline Leg make_point_leg(const MovedWallPoint& wall, const core::Vec3& x) {
+/// The segment to an isotropic scatterer, whose factor is (n_w.d) / |d|^3. Leaves `by_normal`
+/// unset.
+inline Segment make_point_segment(const MovedWallPoint& wall, const core::Vec3& x) {
     const core::Vec3 d = x - wall.position;
     const double squared = d.squaredNorm();
     const double front = wall.normal.dot(d);
-    Leg leg;
-    leg.length = std::sqrt(squared);
-    leg.direction = d / leg.length;
-    leg.by_position = leg.by_wall_normal = core::Vec3::Zero();
-    if (!(front > 0.0)) return leg;
-    const double per3 = 1.0 / (squared * leg.length);
-    leg.factor = front * per3;
-    leg.by_position = per3 * wall.normal - 3.0 * leg.factor / squared * d;
-    leg.by_wall_normal = per3 * d;
-    return leg;
+    Segment segment;
+    segment.length = std::sqrt(squared);
+    segment.direction = d / segment.length;
+    segment.by_position = segment.by_wall_normal = core::Vec3::Zero();
+    if (!(front > 0.0)) return segment;
+    const double per3 = 1.0 / (squared * segment.length);
+    segment.factor = front * per3;
+    segment.by_position = per3 * wall.normal - 3.0 * segment.factor / squared * d;
+    segment.by_wall_normal = per3 * d;
+    return segment;
 }
 
 /// The wall points of a pair.
@@ -77,12 +78,12 @@ struct PathChange {
     double factor = 0.0;
 };
 
-/// Both legs of a path by way of one surface point.
+/// Both segments of a path by way of one surface point.
 struct Path {
     double opl = 0.0;
     double factor = 0.0;
-    Leg light;
-    Leg sensor;
+    Segment light;
+    Segment sensor;
     core::Vec3 opl_by_position;
     core::Vec3 factor_by_position;
     core::Vec3 factor_by_normal;
@@ -99,8 +100,10 @@ struct Path {
     }
 };
 
-/// The path of two legs: the sum of their lengths, the product of their factors.
-inline Path join_legs(const Leg& light, const Leg& sensor, renderer::Gradients gradients) {
+/// The path of two segments: the sum of their lengths, the product of their factors.
+inline Path join_segments(const Segment& light,
+                          const Segment& sensor,
+                          renderer::Gradients gradients) {
     Path path;
     path.opl = light.length + sensor.length;
     path.factor = light.factor * sensor.factor;
@@ -113,12 +116,12 @@ inline Path join_legs(const Leg& light, const Leg& sensor, renderer::Gradients g
     return path;
 }
 
-/// A retroreflector sends back one leg's factor.
-inline Path retroreflected(const Leg& leg, renderer::Gradients gradients) {
-    Leg mirror = leg;
+/// A retroreflector sends back one segment's factor.
+inline Path retroreflected(const Segment& segment, renderer::Gradients gradients) {
+    Segment mirror = segment;
     mirror.factor = 1.0;
     mirror.by_position = mirror.by_normal = mirror.by_wall_normal = core::Vec3::Zero();
-    return join_legs(leg, mirror, gradients);
+    return join_segments(segment, mirror, gradients);
 }
 
 }  // namespace calib

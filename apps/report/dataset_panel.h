@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "apps/report/result_cards.h"
+#include "apps/report/result_panels.h"
 
 #include <string>
 
@@ -14,12 +14,12 @@ bool is_dataset(const std::string& folder);
 bool belongs_to_dataset(const std::string& file_name);
 
 /// What a page shows of a data set.
-struct DatasetCard {
-    ResultCard card;             ///< its picture shows the first items
+struct DatasetPanel {
+    ResultPanel panel;           ///< its picture shows the first items
     std::string histograms_png;  ///< of what was drawn; empty: nothing was
 };
 
 /// throws   core::Error when the folder's recipe is damaged
-DatasetCard dataset_card(const std::string& folder);
+DatasetPanel dataset_panel(const std::string& folder);
 
 }  // namespace apps

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Slips in describing captures of rendered scenes: are they seen, named, and not seen where there
-// are none? Prints the table of slips and scenes.
+// Mistakes in describing captures of rendered scenes: are they seen, named, and not seen where
+// there are none? Prints the table of mistakes and scenes.
 #include "apps/bench/scene.h"
 #include "nlos/preparation/capture_check.h"
 #include "renderer/core/capture/capture.h"
@@ -22,7 +22,7 @@ namespace {
 using core::Capture;
 
 /// A hidden scene before a wall of some size and middle.
-struct Place {
+struct SceneCase {
     std::string scene;
     double wall_m = 1.0;
     core::Vec3 middle_m = core::Vec3::Zero();
@@ -34,10 +34,10 @@ struct Place {
 
 /// Scenes at other places than the thresholds of the recognition were chosen with; the curved wall
 /// was among those.
-const std::vector<Place> kPlaces{{"letter", 1.3, {0.12, -0.08, 0.0}, 100.0, 12},
-                                 {"animal", 0.8, {-0.1, 0.1, 0.0}, 20.0, 13},
-                                 {"bars", 1.4, {0.1, 0.05, 0.0}, 0.0, 14},
-                                 {"curved", 1.0, {0.0, 0.0, 0.0}, 20.0, 16}};
+const std::vector<SceneCase> kSceneCases{{"letter", 1.3, {0.12, -0.08, 0.0}, 100.0, 12},
+                                         {"animal", 0.8, {-0.1, 0.1, 0.0}, 20.0, 13},
+                                         {"bars", 1.4, {0.1, 0.05, 0.0}, 0.0, 14},
+                                         {"curved", 1.0, {0.0, 0.0, 0.0}, 20.0, 16}};
 
 /// A scan of a wall; `size` in those of the place.
 struct ScanCase {
@@ -59,8 +59,8 @@ const ScanCase kWideSingle{
 const std::vector<std::string> kDevicePositions{"scan.sensing_points=[16,16]",
                                                 "scan.laser_m=[-0.6,-0.3,-1.2]",
                                                 "scan.detector_m=[0.4,0.2,-1.0]"};
-const ScanCase kLegsOut{kDevicePositions};
-const ScanCase kLegsIn{[] {
+const ScanCase kSegmentsOut{kDevicePositions};
+const ScanCase kSegmentsIn{[] {
     std::vector<std::string> settings = kDevicePositions;
     settings.insert(
         settings.end(),
@@ -79,32 +79,34 @@ core::WallScan with_a_spot(core::WallScan scan) {
 }
 
 /// The capture of a scene, without noise. The curved wall has points of its own.
-Capture render(const Place& place, const ScanCase& scan_case) {
+Capture render(const SceneCase& scene_case, const ScanCase& scan_case) {
     std::vector<std::string> overrides = kAxis;
     overrides.insert(overrides.end(), scan_case.settings.begin(), scan_case.settings.end());
     const bool has_spot = std::ranges::count(overrides, "scan.pattern=single") > 0;
-    if (place.has_bent_wall()) {
+    if (scene_case.has_bent_wall()) {
         std::erase_if(overrides, [](const std::string& text) {
             return text.starts_with("scan.sensing_points=") || text.starts_with("relay_wall.") ||
                    text.starts_with("scan.pattern=") || text.starts_with("scan.illumination_m=");
         });
     } else {
         overrides.push_back(fmt::format("relay_wall.size_m=[{},{}]",
-                                        place.wall_m * scan_case.size[0],
-                                        place.wall_m * scan_case.size[1]));
-        if (!place.middle_m.isZero()) {
+                                        scene_case.wall_m * scan_case.size[0],
+                                        scene_case.wall_m * scan_case.size[1]));
+        if (!scene_case.middle_m.isZero()) {
             overrides.push_back(fmt::format("relay_wall.center_m=[{},{},{}]",
-                                            place.middle_m.x(),
-                                            place.middle_m.y(),
-                                            place.middle_m.z()));
+                                            scene_case.middle_m.x(),
+                                            scene_case.middle_m.y(),
+                                            scene_case.middle_m.z()));
         }
     }
     overrides.emplace_back("render.method=third_bounce");
     overrides.emplace_back("render.max_bounces=3");
     overrides.emplace_back("render.by_order=false");
-    const BenchScene bench(NLOS_SOURCE_DIR "/scenes/" + place.scene + "/scene.json", overrides);
-    const core::WallScan scan =
-        place.has_bent_wall() && has_spot ? with_a_spot(bench.scan().wall()) : bench.scan().wall();
+    const BenchScene bench(NLOS_SOURCE_DIR "/scenes/" + scene_case.scene + "/scene.json",
+                           overrides);
+    const core::WallScan scan = scene_case.has_bent_wall() && has_spot
+                                    ? with_a_spot(bench.scan().wall())
+                                    : bench.scan().wall();
     return renderer::render(bench.scene(), scan, bench.axis(), bench.settings(), {}).capture;
 }
 
@@ -180,8 +182,8 @@ void add_direct_return(Capture& capture, double offset_m) {
     capture.time_axis.opl_start_m += offset_m;
 }
 
-/// A slip, the scan that it is tried on, and how its remedy reads.
-struct Slip {
+/// A mistake, the scan that it is tried on, and how its remedy reads.
+struct Mistake {
     std::string name;
     ScanCase scan;
     std::function<void(Capture&)> make;
@@ -201,15 +203,15 @@ std::function<std::string(const Capture&)> text(const std::string& remedy) {
     return [remedy](const Capture&) { return remedy; };
 }
 
-std::vector<Slip> all_slips() {
+std::vector<Mistake> all_mistakes() {
     const auto lengths = [](double factor) {
         return [factor](Capture& capture) { scale_lengths(capture, factor); };
     };
     const auto wall = [](double factor) {
         return [factor](Capture& capture) { scale_wall(capture, factor); };
     };
-    const auto origin = [](core::OplOrigin stated) {
-        return [stated](Capture& capture) { capture.scan.wall().opl_origin = stated; };
+    const auto origin = [](core::OplOrigin described) {
+        return [described](Capture& capture) { capture.scan.wall().opl_origin = described; };
     };
     return {
         {"ps taken for ns", kConfocal, lengths(1e3), bins_of},
@@ -223,12 +225,12 @@ std::vector<Slip> all_slips() {
         {"half width for width", kConfocal, wall(0.5), wall_of},
         {"width for half width", kConfocal, wall(2.0), wall_of},
         {"half width, single", kSingle, wall(0.5), wall_of},
-        {"legs in, said out",
-         kLegsIn,
+        {"segments in, said out",
+         kSegmentsIn,
          origin(core::OplOrigin::RelayWall),
          text("capture.opl_origin=device")},
-        {"legs out, said in",
-         kLegsOut,
+        {"segments out, said in",
+         kSegmentsOut,
          origin(core::OplOrigin::Device),
          text("capture.opl_origin=relay_wall")},
         {"x and y swapped", kOblong, swap_axes, text("capture.swap_xy=true")},
@@ -247,29 +249,29 @@ std::vector<Slip> all_slips() {
     };
 }
 
-/// Whether a slip cannot be made: points of the curved wall are a list, which has no axes.
-bool is_impossible(const Slip& slip, const Place& place) {
-    return place.has_bent_wall() &&
-           (slip.name.starts_with("x and y") || slip.name.starts_with("x flipped"));
+/// Whether a mistake cannot be made: points of the curved wall are a list, which has no axes.
+bool is_impossible(const Mistake& mistake, const SceneCase& scene_case) {
+    return scene_case.has_bent_wall() &&
+           (mistake.name.starts_with("x and y") || mistake.name.starts_with("x flipped"));
 }
 
 /// Captures by place and scan, each rendered once.
-const Capture& right_capture(const Place& place, const ScanCase& scan) {
+const Capture& right_capture(const SceneCase& scene_case, const ScanCase& scan) {
     static std::map<std::string, Capture> rendered;
     const std::string key = fmt::format("{} {} {} {} {}",
-                                        place.scene,
-                                        place.wall_m,
+                                        scene_case.scene,
+                                        scene_case.wall_m,
                                         scan.size[0],
                                         scan.size[1],
                                         fmt::join(scan.settings, " "));
-    if (!rendered.contains(key)) rendered.emplace(key, render(place, scan));
+    if (!rendered.contains(key)) rendered.emplace(key, render(scene_case, scan));
     return rendered.at(key);
 }
 
 /// A right capture: radiance, or counts where the place has a peak.
-Capture seen(const Place& place, const ScanCase& scan) {
-    const Capture& right = right_capture(place, scan);
-    return place.peak > 0.0 ? counted(right, place.peak, place.seed) : right;
+Capture seen(const SceneCase& scene_case, const ScanCase& scan) {
+    const Capture& right = right_capture(scene_case, scan);
+    return scene_case.peak > 0.0 ? counted(right, scene_case.peak, scene_case.seed) : right;
 }
 
 std::string warnings_of(const Capture& capture) {
@@ -281,28 +283,29 @@ struct Rate {
     int named = 0;
 };
 
-/// Tries every slip at every place, and prints the table.
+/// Tries every mistake at every place, and prints the table.
 Rate recognised() {
     Rate rate;
     std::string missed;
     fmt::print("{:<28}", "");
-    for (const Place& place : kPlaces) fmt::print("{:<8}", place.scene);
-    for (const Slip& slip : all_slips()) {
-        fmt::print("\n{:<28}", slip.name);
-        for (const Place& place : kPlaces) {
-            if (is_impossible(slip, place)) {
+    for (const SceneCase& scene_case : kSceneCases) fmt::print("{:<8}", scene_case.scene);
+    for (const Mistake& mistake : all_mistakes()) {
+        fmt::print("\n{:<28}", mistake.name);
+        for (const SceneCase& scene_case : kSceneCases) {
+            if (is_impossible(mistake, scene_case)) {
                 fmt::print("{:<8}", "-");
                 continue;
             }
-            const Capture right = seen(place, slip.scan);
+            const Capture right = seen(scene_case, mistake.scan);
             Capture capture = right;
-            slip.make(capture);
+            mistake.make(capture);
             const std::string warnings = warnings_of(capture);
-            const bool is_named = warnings.find(slip.remedy(right)) != std::string::npos;
+            const bool is_named = warnings.find(mistake.remedy(right)) != std::string::npos;
             ++rate.tried;
             rate.named += is_named ? 1 : 0;
             fmt::print("{:<8}", is_named ? "yes" : "no");
-            if (!is_named) missed += fmt::format("{}, {}: {}\n", slip.name, place.scene, warnings);
+            if (!is_named)
+                missed += fmt::format("{}, {}: {}\n", mistake.name, scene_case.scene, warnings);
         }
         std::fflush(stdout);
     }
@@ -316,7 +319,7 @@ Rate alarmed() {
         kConfocal,
         kOblong,
         kSingle,
-        kLegsIn,
+        kSegmentsIn,
         {{"scan.sensing_points=[16,16]"}, {2.0, 2.0}},
         {{"scan.sensing_points=[12,12]"}, {0.5, 0.5}},
         {{"scan.sensing_points=[5,5]"}},
@@ -326,44 +329,44 @@ Rate alarmed() {
           "scan.sensing_points=[6,6]",
           "scan.illumination_points=[4,4]"}}};
     Rate rate;
-    for (const Place& place : kPlaces) {
+    for (const SceneCase& scene_case : kSceneCases) {
         for (const ScanCase& scan : scans) {
-            if (place.has_bent_wall() && &scan != &scans[0] && &scan != &scans[2] &&
+            if (scene_case.has_bent_wall() && &scan != &scans[0] && &scan != &scans[2] &&
                 &scan != &scans[3]) {
                 continue;  // the wall's points are its own
             }
-            const std::string warnings = warnings_of(seen(place, scan));
+            const std::string warnings = warnings_of(seen(scene_case, scan));
             ++rate.tried;
             if (warnings.empty()) continue;
             ++rate.named;
-            fmt::print("{} {}: {}\n", place.scene, fmt::join(scan.settings, " "), warnings);
+            fmt::print("{} {}: {}\n", scene_case.scene, fmt::join(scan.settings, " "), warnings);
         }
     }
     fmt::print("{} of {} false alarms\n", rate.named, rate.tried);
     return rate;
 }
 
-TEST(Slips, AreRecognisedAndRightlyNamed) {
+TEST(Mistakes, AreRecognisedAndRightlyNamed) {
     const Rate rate = recognised();
     EXPECT_GE(rate.named, 0.94 * rate.tried);
 }
 
-TEST(Slips, AreNotSeenInCapturesThatAreRight) {
+TEST(Mistakes, AreNotSeenInCapturesThatAreRight) {
     const Rate rate = alarmed();
     EXPECT_LE(rate.named, 0.02 * rate.tried);
 }
 
-TEST(Slips, OfUnitsAreSeenInEveryScene) {
-    for (const Place& place : kPlaces) {
-        const Capture& right = right_capture(place, kConfocal);
-        Capture counts = counted(right, 20.0, place.seed);
+TEST(Mistakes, OfUnitsAreSeenInEveryScene) {
+    for (const SceneCase& scene_case : kSceneCases) {
+        const Capture& right = right_capture(scene_case, kConfocal);
+        Capture counts = counted(right, 20.0, scene_case.seed);
         counts.unit = core::TransientUnit::Radiance;
         EXPECT_NE(warnings_of(counts).find("capture.unit=counts"), std::string::npos)
-            << place.scene;
+            << scene_case.scene;
         Capture radiance = right;
         radiance.unit = core::TransientUnit::Counts;
         EXPECT_NE(warnings_of(radiance).find("capture.unit=radiance"), std::string::npos)
-            << place.scene;
+            << scene_case.scene;
     }
 }
 

@@ -11,12 +11,12 @@
 
 namespace renderer {
 
-/// Share of the first vertices drawn from the hidden area, the others by direction. Seen from the
-/// wall, hidden objects are small and most directions miss them.
-inline constexpr double kAreaShareFromWall = 0.75;
+/// Fraction of the first vertices drawn from the hidden area, the others by direction. Seen from
+/// the wall, hidden objects are small and most directions miss them.
+inline constexpr double kAreaFractionFromWall = 0.75;
 /// The same after a vertex on a hidden surface, where BSDF samples follow lobes and find what is
 /// near.
-inline constexpr double kAreaShareBetweenSurfaces = 0.25;
+inline constexpr double kAreaFractionBetweenSurfaces = 0.25;
 
 /// Fraction of walks that Russian roulette lets continue from a vertex that they come to from the
 /// direction `to_previous`; of those from the light, at every order.
@@ -30,7 +30,7 @@ inline double survival_at(const PathVertex& vertex, const core::Vec3& to_previou
 ///
 /// The next vertex is drawn either from the hidden area or from the BSDF; both kinds are weighted
 /// by the balance heuristic (source [Veach1997]).
-class SurfaceWalk {
+class RandomWalk {
  public:
     /// A segment between two surface points, without visibility.
     struct Step {
@@ -43,26 +43,26 @@ class SurfaceWalk {
 
     /// scene           must outlive the walk
     /// laser_spot_m2   area of the laser spot, for retroreflectors
-    /// area_share      of the vertices after one on a hidden surface, drawn from the hidden area
-    SurfaceWalk(const Scene& scene,
-                double laser_spot_m2,
-                double area_share = kAreaShareBetweenSurfaces)
+    /// area_fraction   of the vertices after one on a hidden surface, drawn from the hidden area
+    RandomWalk(const Scene& scene,
+               double laser_spot_m2,
+               double area_fraction = kAreaFractionBetweenSurfaces)
         : scene_(&scene),
           area_sampler_(scene),
           laser_spot_m2_(laser_spot_m2),
-          area_share_(area_share) {}
+          area_fraction_(area_fraction) {}
 
     const AreaSampler& area_sampler() const { return area_sampler_; }
-    /// Share of the next vertices that draw_next() draws from the hidden area.
-    double area_share(const PathVertex& vertex) const;
+    /// Fraction of the next vertices that draw_next() draws from the hidden area.
+    double area_fraction(const PathVertex& vertex) const;
 
     /// BSDF value [1/sr] at a vertex towards `outgoing` (unit).
     double evaluate(const PathVertex& vertex, const core::Vec3& outgoing) const;
 
     /// Unoccluded contribution of the path that connects `vertex` to the light.
     double connection_value(const PathVertex& vertex, const PathEndpoints& ends) const;
-    /// Length and velocity of that path, legs to the devices included.
-    PathExtent extent_to_light(const PathVertex& vertex, const PathEndpoints& ends) const;
+    /// Length and velocity of that path, segments to the devices included.
+    OpticalPath optical_path_to_light(const PathVertex& vertex, const PathEndpoints& ends) const;
     bool light_is_hidden(const PathVertex& vertex, const PathEndpoints& ends) const {
         return scene_->rays().is_blocked(
             vertex.point.position, vertex.normal, ends.light.position, ends.light.normal);
@@ -106,7 +106,7 @@ class SurfaceWalk {
     const Scene* scene_;
     AreaSampler area_sampler_;
     double laser_spot_m2_;
-    double area_share_;
+    double area_fraction_;
 };
 
 }  // namespace renderer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/report/lead.h"
+#include "apps/report/summary.h"
 
 #include <fmt/core.h>
 #include <fmt/format.h>
@@ -57,7 +57,7 @@ std::string contents_text(const ResultsFolder& results) {
 
 }  // namespace
 
-std::string lead_text(const ResultsFolder& results) {
+std::string summary_text(const ResultsFolder& results) {
     const PageViews& views = results.views;
     std::string text;
     if (!views.animations.empty()) text = with_article(views.animations.front().detail);

@@ -15,7 +15,7 @@ namespace apps {
 using Fact = std::pair<std::string, std::string>;
 
 /// A capture, volume or fit, reduced to what a page shows of it.
-struct ResultCard {
+struct ResultPanel {
     std::string file;
     std::string label;        ///< what to call it: method and setting; empty: its file
     std::string picture_png;  ///< bytes of a PNG file
@@ -29,10 +29,10 @@ struct ResultCard {
 /// path     of the file, whose name is shown
 /// json     content of the file
 /// throws   core::Error as reading them does
-ResultCard capture_card(const std::string& path, const core::Capture& capture);
-ResultCard volume_card(const std::string& path, const nlos::Reconstruction& result);
-ResultCard fit_card(const std::string& path, const core::Json& json);
-ResultCard track_card(const std::string& path, const core::Json& json);
+ResultPanel capture_panel(const std::string& path, const core::Capture& capture);
+ResultPanel volume_panel(const std::string& path, const nlos::Reconstruction& result);
+ResultPanel fit_panel(const std::string& path, const core::Json& json);
+ResultPanel track_panel(const std::string& path, const core::Json& json);
 
 /// A number with three significant digits and no exponent where it can be avoided.
 std::string short_number(double value);

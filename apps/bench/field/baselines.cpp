@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/bench/field/contenders.h"
+#include "apps/bench/field/baselines.h"
 
 #include "apps/run_program.h"
 #include "renderer/core/error.h"
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kPeerShare = 0.8;  // of the memory that the machine can give
+constexpr double kPeerFraction = 0.8;  // of the memory that the machine can give
 
 double number_at(const core::Json& json, const char* key) {
     const auto it = json.find(key);
@@ -26,7 +26,7 @@ double number_at(const core::Json& json, const char* key) {
 
 }  // namespace
 
-Contenders::Contenders(const std::string& peers, std::string folder, double limit_s)
+Baselines::Baselines(const std::string& peers, std::string folder, double limit_s)
     : program_(program_beside("nlos")), folder_(std::move(folder)), limit_s_(limit_s) {
     if (peers.empty()) return;
     python_ = (fs::path(peers) / "bin" / "python").string();
@@ -37,9 +37,9 @@ Contenders::Contenders(const std::string& peers, std::string folder, double limi
     }
 }
 
-FieldRun Contenders::run(const std::string& kind,
-                         const std::vector<std::string>& arguments,
-                         const ProcessLimits& limits) {
+FieldRun Baselines::run(const std::string& kind,
+                        const std::vector<std::string>& arguments,
+                        const ProcessLimits& limits) {
     FieldRun result;
     if (const auto it = given_up_.find(kind); it != given_up_.end()) {
         result.failure = it->second;
@@ -62,28 +62,28 @@ FieldRun Contenders::run(const std::string& kind,
     return result;
 }
 
-FieldRun Contenders::run_own(const std::string& kind, std::vector<std::string> arguments) {
+FieldRun Baselines::run_own(const std::string& kind, std::vector<std::string> arguments) {
     const std::string command = arguments.front();
     arguments.insert(arguments.begin(), program_);
     for (const char* option : {"--threads", "1", "--json"}) arguments.emplace_back(option);
     FieldRun result = run("nlos " + kind, arguments, {limit_s_});
     if (!result.failure.empty()) return result;
-    // On one thread, shares of time are shares of CPU time.
+    // On one thread, fractions of time are fractions of CPU time.
     const double whole_s = number_at(result.said, "seconds");
     const double work_s = number_at(result.said, ("seconds_" + command).c_str());
     result.work_cpu_s = whole_s > 0.0 ? result.process_cpu_s * work_s / whole_s : 0.0;
     return result;
 }
 
-FieldRun Contenders::run_peer(const std::string& kind,
-                              const std::string& adapter,
-                              const core::Json& request) {
+FieldRun Baselines::run_peer(const std::string& kind,
+                             const std::string& adapter,
+                             const core::Json& request) {
     if (python_.empty()) return {.failure = "no environment of peers was given (--peers)"};
     const std::string name = "apps/bench/field/peers/" + adapter + ".py";
     const std::string file = fmt::format("{}/{:03}.request.json", folder_, num_runs_);
     core::write_text_file(file, core::json_text(request));
     // A peer that takes all memory would take this program with it.
-    const double most_bytes = kPeerShare * static_cast<double>(core::available_memory_bytes());
+    const double most_bytes = kPeerFraction * static_cast<double>(core::available_memory_bytes());
     FieldRun result = run(adapter + " " + kind,
                           {python_, core::shipped_file(name), file},
                           {limit_s_, static_cast<std::uint64_t>(most_bytes)});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/report/dataset_card.h"
+#include "apps/report/dataset_panel.h"
 
 #include "apps/dataset/dataset_index.h"
 #include "nlos/pictures/picture.h"
@@ -36,7 +36,7 @@ std::vector<Fact> dataset_facts(const DatasetIndex& index, const DatasetTotals& 
         {"Shards", fmt::format("{}", index.shards.size())},
         {"Size", short_number(static_cast<double>(totals.bytes) / 1e6) + " MB"},
         {"Processor time of an item", short_number(totals.profile.total() / items) + " s"},
-        {"Of that", shares_text(totals.profile)}};
+        {"Of that", fractions_text(totals.profile)}};
     if (totals.dark_items > 0) {
         facts.emplace_back("Items without light", fmt::format("{}", totals.dark_items));
     }
@@ -61,21 +61,21 @@ bool belongs_to_dataset(const std::string& file_name) {
            file_name == "index.json" || file_name.starts_with("preview.");
 }
 
-DatasetCard dataset_card(const std::string& folder) {
+DatasetPanel dataset_panel(const std::string& folder) {
     const DatasetIndex index = read_dataset(folder, ShardCheck::ManifestOnly);
-    DatasetCard result;
-    result.card.file = "data set";
+    DatasetPanel result;
+    result.panel.file = "data set";
     const DatasetTotals totals = totals_of(index);
-    result.card.facts = dataset_facts(index, totals);
-    result.card.settings = index.recipe;
-    result.card.notes = index.problems;
-    result.card.notes.insert(result.card.notes.end(), index.doubts.begin(), index.doubts.end());
+    result.panel.facts = dataset_facts(index, totals);
+    result.panel.settings = index.recipe;
+    result.panel.notes = index.problems;
+    result.panel.notes.insert(result.panel.notes.end(), index.doubts.begin(), index.doubts.end());
     for (const auto& [name, reason] : totals.broken_meshes) {
-        result.card.notes.push_back(name + " was skipped: " + reason);
+        result.panel.notes.push_back(name + " was skipped: " + reason);
     }
     std::error_code ignored;
     const std::string preview = preview_path(folder, ".png");
-    if (fs::exists(preview, ignored)) result.card.picture_png = read_bytes(preview);
+    if (fs::exists(preview, ignored)) result.panel.picture_png = read_bytes(preview);
     std::vector<nlos::Panel> panels;
     for (const auto& [key, histogram] : drawn_histograms(index)) {
         panels.emplace_back(outline(key, histogram));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "calib/forward/knot_changes.h"
+#include "calib/forward/knot_derivatives.h"
 
 #include "tests/support/random_geometry.h"
 #include "tests/support/statistics.h"
@@ -8,7 +8,7 @@
 
 namespace {
 
-using calib::KnotChange;
+using calib::KnotDerivative;
 using calib::KnotFit;
 
 TEST(KnotFit, PullIsTheTransposeOfChange) {
@@ -31,8 +31,8 @@ TEST(KnotFit, PullIsTheTransposeOfChange) {
         const auto opl_change = draw(-1.0, 1.0);
         const auto weight_change = draw(-1.0, 1.0);
         const auto by = draw(-1.0, 1.0);
-        const KnotChange by_knots{{by[0], by[1], by[2]}, {by[3], by[4], by[5]}};
-        const KnotChange change = fit.change(opl_change, weight_change);
+        const KnotDerivative by_knots{{by[0], by[1], by[2]}, {by[3], by[4], by[5]}};
+        const KnotDerivative change = fit.change(opl_change, weight_change);
         const auto gradients = fit.pull(by_knots);
         double forward = 0.0;
         double reverse = 0.0;

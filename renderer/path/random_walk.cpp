@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/path/surface_walk.h"
+#include "renderer/path/random_walk.h"
 
 #include <cmath>
 
@@ -18,11 +18,11 @@ constexpr double kMinCosine = 1e-12;
 
 }  // namespace
 
-double SurfaceWalk::area_share(const PathVertex& vertex) const {
-    return scene_->is_hidden(vertex.point.facet) ? area_share_ : kAreaShareFromWall;
+double RandomWalk::area_fraction(const PathVertex& vertex) const {
+    return scene_->is_hidden(vertex.point.facet) ? area_fraction_ : kAreaFractionFromWall;
 }
 
-double SurfaceWalk::evaluate(const PathVertex& vertex, const Vec3& outgoing) const {
+double RandomWalk::evaluate(const PathVertex& vertex, const Vec3& outgoing) const {
     if (const auto value = constant_value(vertex.bsdf)) {
         const bool same_side =
             vertex.normal.dot(vertex.to_previous) * vertex.normal.dot(outgoing) > 0.0;
@@ -34,7 +34,7 @@ double SurfaceWalk::evaluate(const PathVertex& vertex, const Vec3& outgoing) con
         vertex.bsdf, facet_from_world * vertex.to_previous, facet_from_world * outgoing);
 }
 
-double SurfaceWalk::connection_value(const PathVertex& vertex, const PathEndpoints& ends) const {
+double RandomWalk::connection_value(const PathVertex& vertex, const PathEndpoints& ends) const {
     if (const auto returned = returned_to_source(vertex.bsdf)) {
         if (!ends.coincide || vertex.order != 3) return 0.0;
         return vertex.throughput * *returned / laser_spot_m2_ * ends.light.strength;
@@ -46,16 +46,17 @@ double SurfaceWalk::connection_value(const PathVertex& vertex, const PathEndpoin
            std::abs(vertex.normal.dot(direction)) * ends.light.factor(-direction) / distance2;
 }
 
-PathExtent SurfaceWalk::extent_to_light(const PathVertex& vertex, const PathEndpoints& ends) const {
-    PathExtent extent = vertex.extent;
-    extent.add_segment(ends.light.position - vertex.point.position,
-                       scene_->velocity_m_per_s(vertex.point.facet),
-                       ends.light.velocity_m_per_s);
-    extent.opl_m += ends.device_legs_m;
-    return extent;
+OpticalPath RandomWalk::optical_path_to_light(const PathVertex& vertex,
+                                              const PathEndpoints& ends) const {
+    OpticalPath optical_path = vertex.optical_path;
+    optical_path.add_segment(ends.light.position - vertex.point.position,
+                             scene_->velocity_m_per_s(vertex.point.facet),
+                             ends.light.velocity_m_per_s);
+    optical_path.opl_m += ends.device_segments_m;
+    return optical_path;
 }
 
-bool SurfaceWalk::survives(PathVertex& vertex, core::Rng& rng) const {
+bool RandomWalk::survives(PathVertex& vertex, core::Rng& rng) const {
     if (vertex.order < kFirstRouletteOrder) return true;
     const double survival = survival_at(vertex, vertex.to_previous);
     if (rng.uniform() >= survival) return false;
@@ -63,9 +64,9 @@ bool SurfaceWalk::survives(PathVertex& vertex, core::Rng& rng) const {
     return true;
 }
 
-double SurfaceWalk::pdf_direction(const PathVertex& vertex,
-                                  const Vec3& direction,
-                                  double cosine) const {
+double RandomWalk::pdf_direction(const PathVertex& vertex,
+                                 const Vec3& direction,
+                                 double cosine) const {
     if (traits_of(vertex.bsdf).is_constant) return cosine / kPi;
     const core::Mat3 facet_from_world =
         scene_->facet(vertex.point.facet).world_from_facet().transpose();
@@ -73,8 +74,8 @@ double SurfaceWalk::pdf_direction(const PathVertex& vertex,
         vertex.bsdf, facet_from_world * vertex.to_previous, facet_from_world * direction);
 }
 
-std::optional<SurfaceWalk::Step> SurfaceWalk::step_to(const PathVertex& vertex,
-                                                      const SurfacePoint& next) const {
+std::optional<RandomWalk::Step> RandomWalk::step_to(const PathVertex& vertex,
+                                                    const SurfacePoint& next) const {
     const Vec3 offset = next.position - vertex.point.position;
     const double distance2 = offset.squaredNorm();
     if (!(distance2 > 0.0)) return std::nullopt;
@@ -89,26 +90,26 @@ std::optional<SurfaceWalk::Step> SurfaceWalk::step_to(const PathVertex& vertex,
     if (!(step.transport > 0.0)) return std::nullopt;
 
     const double pdf_direction = this->pdf_direction(vertex, step.direction, cosine);
-    const double area_share = this->area_share(vertex);
+    const double area_fraction = this->area_fraction(vertex);
     const double area_pdf = scene_->is_hidden(next.facet) ? area_sampler_.pdf_area() : 0.0;
-    step.pdf_area = area_share * area_pdf + (1.0 - area_share) * pdf_direction * per_area;
+    step.pdf_area = area_fraction * area_pdf + (1.0 - area_fraction) * pdf_direction * per_area;
     return step;
 }
 
-double SurfaceWalk::pdf_area(const PathVertex& vertex,
-                             const Vec3& to_previous,
-                             const SurfacePoint& next) const {
+double RandomWalk::pdf_area(const PathVertex& vertex,
+                            const Vec3& to_previous,
+                            const SurfacePoint& next) const {
     PathVertex turned = vertex;
     turned.to_previous = to_previous;
     const auto step = step_to(turned, next);
     return step ? step->pdf_area : 0.0;
 }
 
-std::optional<double> SurfaceWalk::draw_next(PathVertex& vertex,
-                                             core::Rng& rng,
-                                             std::uint64_t& num_rays) const {
+std::optional<double> RandomWalk::draw_next(PathVertex& vertex,
+                                            core::Rng& rng,
+                                            std::uint64_t& num_rays) const {
     SurfacePoint next;
-    const bool from_area = rng.uniform() < area_share(vertex);
+    const bool from_area = rng.uniform() < area_fraction(vertex);
     if (from_area) {
         const double u1 = rng.uniform();
         next = area_sampler_.sample(u1, rng.uniform());
@@ -139,15 +140,15 @@ std::optional<double> SurfaceWalk::draw_next(PathVertex& vertex,
     return step->pdf_area;
 }
 
-PathVertex SurfaceWalk::advance(const PathVertex& vertex,
-                                const SurfacePoint& next,
-                                const Step& step,
-                                double pdf_area) const {
+PathVertex RandomWalk::advance(const PathVertex& vertex,
+                               const SurfacePoint& next,
+                               const Step& step,
+                               double pdf_area) const {
     PathVertex advanced = vertex_at(*scene_, next, -step.direction);
     advanced.throughput = vertex.throughput * step.transport / pdf_area;
-    advanced.extent.opl_m = vertex.extent.opl_m + step.distance_m;
-    advanced.extent.velocity_m_per_s =
-        vertex.extent.velocity_m_per_s +
+    advanced.optical_path.opl_m = vertex.optical_path.opl_m + step.distance_m;
+    advanced.optical_path.velocity_m_per_s =
+        vertex.optical_path.velocity_m_per_s +
         step.direction.dot(scene_->velocity_m_per_s(next.facet) -
                            scene_->velocity_m_per_s(vertex.point.facet));
     advanced.order = vertex.order + 1;
