@@ -25,10 +25,14 @@ class SceneTruth {
     /// What the whole wall sees, at the scene's own resolution.
     core::DepthMap depth_map() const { return renderer::trace_ground_truth(scene_, description_); }
 
-    /// What is seen from the columns of a volume or of another depth map.
+    /// The surface that the whole wall sees, to score points with.
+    core::TrueSurface surface() const { return surface(depth_map()); }
+
+    /// What is seen from the columns of a volume or of a depth map, to score it.
     template <class Columns>
-    core::DepthMap depth_map(const Columns& columns) const {
-        return renderer::trace_depth_map(scene_, columns.world_from_wall, columns.x_m, columns.y_m);
+    core::TrueSurface surface(const Columns& columns) const {
+        return renderer::trace_true_surface(
+            scene_, description_, columns.world_from_wall, columns.x_m, columns.y_m);
     }
 
  private:

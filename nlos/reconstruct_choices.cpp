@@ -238,6 +238,16 @@ void append(std::vector<std::string> more, std::vector<std::string>& texts) {
     std::ranges::move(more, std::back_inserter(texts));
 }
 
+/// How far apart the captured light tells positions: by its bins or, where it is wider, by the
+/// response [m].
+std::optional<double> data_resolution_m(const PreparedCapture& prepared,
+                                        const core::ResponseSettings& response) {
+    if (!prepared.light || !std::isfinite(prepared.light->resolution_m)) return std::nullopt;
+    const double response_m = response.jitter_fwhm_ps * 1e-12 * core::kSpeedOfLight;
+    return prepared.light->resolution_m *
+           std::max(1.0, response_m / prepared.time_axis.bin_width_m);
+}
+
 std::vector<std::string> warnings_of(const core::Capture& capture,
                                      const ReconstructionPlan& plan,
                                      const ReconstructSettings& settings) {
@@ -264,6 +274,8 @@ ReconstructionPlan choose(const core::Capture& capture, Reconstruction& result) 
 
     ReconstructionPlan plan;
     plan.prepared = crop_capture(capture, settings.crop);
+    plan.prepared.light = resolve_light(plan.prepared);
+    result.resolution_m = data_resolution_m(plan.prepared, settings.response);
     choose_and_enter_method(capture, plan.prepared, result);
     plan.preparation = choose_preparation(plan.prepared, settings);
     plan.time_axis = plan.preparation.prepared_axis(plan.prepared.time_axis);

@@ -39,10 +39,14 @@ Comparison compare_volume_to_scene(const std::string& a,
                                    const std::string& b,
                                    std::optional<double> threshold_m) {
     const nlos::Reconstruction result = nlos::read_volume(a);
-    const core::DepthMap truth = SceneTruth(b).depth_map(result.volume.axes);
-    return {nlos::compare_to_truth(result, truth, threshold_m),
-            {},
-            nlos::comparison_panels(result, truth)};
+    const core::TrueSurface truth = SceneTruth(b).surface(result.volume.axes);
+    Comparison comparison{nlos::compare_to_truth(result, truth, threshold_m),
+                          {},
+                          nlos::comparison_panels(result, nearest_surfaces(truth, result.depth))};
+    if (auto text = nlos::coarse_truth_warning(truth)) {
+        comparison.warnings.push_back(std::move(*text));
+    }
+    return comparison;
 }
 
 // `b` is a scene, or a fit with its scene beside it.
@@ -93,10 +97,9 @@ Comparison compare_kinds(const std::string& a,
         return compare_fit_to_scene(a, b, between_points);
     }
     if (is_surface(kind_a) && kind_b == FileKind::Scene) {
-        return {
-            nlos::compare_points(
-                points_of_file(a), core::surface_points(SceneTruth(b).depth_map()), between_points),
-            {}};
+        return {nlos::compare_points(
+                    points_of_file(a), SceneTruth(b).surface().samples, between_points),
+                {}};
     }
     if (kind_a == FileKind::Volume && kind_b == FileKind::Volume) {
         return {nlos::compare_volumes(nlos::read_volume(a), nlos::read_volume(b), threshold_m), {}};

@@ -165,10 +165,11 @@ TruthView truth_view(const std::string& scene_path, std::vector<ResultView>& res
     for (ResultView& result : results) {
         const core::DepthMap& columns = result.depth;
         if (columns.depth_m.empty()) continue;
-        result.truth = truth.depth_map(columns);
+        const core::TrueSurface surface = truth.surface(columns);
+        result.truth = core::nearest_surfaces(surface, columns);
+        if (&result == &results.front()) view.depth = surface.main;
     }
-    const bool has_columns = !results.empty() && results.front().truth.has_value();
-    view.depth = has_columns ? *results.front().truth : truth.depth_map();
+    if (view.depth.depth_m.empty()) view.depth = truth.depth_map();
     return view;
 }
 

@@ -203,9 +203,11 @@ void bind_scores(nb::module_& module) {
     using Threshold = std::optional<double>;
     module.def("compare",
                [](const nlos::Reconstruction& a, const SceneObject& b, const Threshold& threshold) {
-                   return scores(run_long(nb::none(), 0, [&](const core::Progress&) {
-                       const apps::SceneTruth truth(b.description, b.geometry);
-                       return nlos::compare_to_truth(a, truth.depth_map(a.volume.axes), threshold);
+                   return scores(run_long(nb::none(), 0, [&](const core::Progress& report) {
+                       const core::TrueSurface truth =
+                           apps::SceneTruth(b.description, b.geometry).surface(a.volume.axes);
+                       if (const auto text = nlos::coarse_truth_warning(truth)) report.warn(*text);
+                       return nlos::compare_to_truth(a, truth, threshold);
                    }));
                });
     module.def(
@@ -230,7 +232,7 @@ void bind_scores(nb::module_& module) {
         "compare", [](const SceneObject& a, const SceneObject& b, const Threshold& threshold) {
             const apps::SceneTruth truth(b.description, b.geometry);
             return scores(nlos::compare_points(apps::surface_samples(a.geometry),
-                                               core::surface_points(truth.depth_map()),
+                                               truth.surface().samples,
                                                threshold.value_or(apps::kDefaultThreshold_m)));
         });
     module.def("compare_files",

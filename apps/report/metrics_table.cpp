@@ -27,22 +27,24 @@ struct MetricStyle {
 
 // Errors of depths and normals are of what was found alone, and the projection's amplitudes are no
 // albedo: for these there is no best.
-constexpr std::array<MetricStyle, 32> kStyles{{
+constexpr std::array<MetricStyle, 34> kStyles{{
     {"depth_mae_m", "Depth error, mean", 1e3, "mm", Better::Neither},
     {"depth_median_m", "Depth error, median", 1e3, "mm", Better::Neither},
     {"depth_rmse_m", "Depth error, RMS", 1e3, "mm", Better::Neither},
     {"depth_coverage", "... of this fraction of the surface", 1e2, "%", Better::Higher},
     {"mask_iou", "Mask IoU at 20 %", 1e2, "%", Better::Higher},
     {"mask_iou_stated", "Mask IoU, as the result reports", 1e2, "%", Better::Higher},
-    {"mask_iou_best", "Mask IoU, best threshold", 1e2, "%", Better::Higher},
-    {"mask_iou_best_threshold", "... which is, of the maximum", 1e2, "%", Better::Neither},
     {"normal_mae_deg", "Normal error, mean", 1.0, "deg", Better::Neither},
     {"normal_median_deg", "Normal error, median", 1.0, "deg", Better::Neither},
     {"chamfer_m", "Chamfer distance", 1e3, "mm", Better::Lower},
     {"fscore", "F-score", 1e2, "%", Better::Higher},
     {"completeness", "Completeness: true surface found", 1e2, "%", Better::Higher},
     {"accuracy", "Accuracy: found surface true", 1e2, "%", Better::Higher},
-    {"fscore_threshold_m", "Threshold of these three", 1e3, "mm", Better::Neither},
+    {"accuracy_m", "Distance of found to true surface", 1e3, "mm", Better::Neither},
+    {"fscore_threshold_m", "Threshold of F, completeness, accuracy", 1e3, "mm", Better::Neither},
+    {"fscore_10mm", "F-score within 10 mm", 1e2, "%", Better::Higher},
+    {"fscore_resolution", "F-score within the data's resolution", 1e2, "%", Better::Higher},
+    {"resolution_m", "... which is", 1e3, "mm", Better::Neither},
     {"psnr_db", "PSNR of the projection", 1.0, "dB", Better::Neither},
     {"ssim", "SSIM of the projection", 1.0, "", Better::Neither},
     {"peak_distance_m", "Peak to truth", 1e3, "mm", Better::Lower},
@@ -76,6 +78,7 @@ std::vector<MetricColumn> columns_of(const std::vector<ScoredResult>& scores) {
         nlos::Metrics metrics = scored.metrics;
         std::size_t next = 0;
         for_each_field(metrics, [&](const char* name, const auto& field, const char* meaning) {
+            if (nlos::looks_at_truth(name)) return;
             if (next == columns.size()) columns.push_back({name, meaning, {}});
             std::optional<double> value;
             if (field) value = static_cast<double>(*field);
@@ -199,9 +202,9 @@ std::vector<std::vector<ScoredResult>> groups_by_threshold(
 std::string metrics_tiles(const std::vector<ScoredResult>& scores) {
     const auto leader =
         std::max_element(scores.begin(), scores.end(), [](const auto& a, const auto& b) {
-            return a.metrics.fscore.value_or(-1.0) < b.metrics.fscore.value_or(-1.0);
+            return a.metrics.fscore_10mm.value_or(-1.0) < b.metrics.fscore_10mm.value_or(-1.0);
         });
-    if (leader == scores.end() || !leader->metrics.fscore) return "";
+    if (leader == scores.end() || !leader->metrics.fscore_10mm) return "";
     const nlos::Metrics& best = leader->metrics;
     std::string html;
     const auto add = [&](const std::string& label,
@@ -217,16 +220,17 @@ std::string metrics_tiles(const std::vector<ScoredResult>& scores) {
             unit,
             escape_html(remark));
     };
-    const std::string within = three_digits(1e3 * best.fscore_threshold_m.value_or(0.0)) + " mm";
-    add("F-score within " + within, best.fscore, 1e2, "%", leader->name);
-    add("Completeness", best.completeness, 1e2, "%", "of the true surface found");
-    add("Accuracy", best.accuracy, 1e2, "%", "of the found surface true");
     add("Depth error, mean",
         best.depth_mae_m,
         1e3,
         "mm",
-        fmt::format("over {} % of the true surface",
-                    three_digits(1e2 * best.depth_coverage.value_or(0.0))));
+        fmt::format("over {} % of the true surface; {}",
+                    three_digits(1e2 * best.depth_coverage.value_or(0.0)),
+                    leader->name));
+    add("F-score within 10 mm", best.fscore_10mm, 1e2, "%", leader->name);
+    const std::string within = three_digits(1e3 * best.fscore_threshold_m.value_or(0.0)) + " mm";
+    add("Completeness", best.completeness, 1e2, "%", "of the true surface within " + within);
+    add("Accuracy", best.accuracy, 1e2, "%", "of the found surface within " + within);
     return "<div class=\"tiles\">" + html + "</div>\n";
 }
 

@@ -174,7 +174,7 @@ std::size_t best_result(const ResultsFolder& results) {
     double highest = -1.0;
     for (const ScoredResult& scored : results.scores) {
         for (std::size_t i = 0; i < results.volumes.size(); ++i) {
-            const double fscore = scored.metrics.fscore.value_or(-1.0);
+            const double fscore = scored.metrics.fscore_10mm.value_or(-1.0);
             if (results.volumes[i].file != scored.result || fscore <= highest) continue;
             highest = fscore;
             best = i;

@@ -75,9 +75,10 @@ std::optional<core::Json> SweepResults::rows() const {
         if (plan_.settings().repeats > 1) row["repeat"] = (*result)["repeat"];
         row.update((*result)["values"]);
         for (const char* key : {"run", "repeat", "values", "fingerprint"}) result->erase(key);
-        core::Json metrics = (*result)["metrics"];
+        for (const auto& [name, score] : (*result)["metrics"].items()) {
+            if (!nlos::looks_at_truth(name)) row[name] = score;
+        }
         result->erase("metrics");
-        row.update(metrics);
         row.update(*result);
         rows.push_back(std::move(row));
     }

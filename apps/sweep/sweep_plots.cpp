@@ -47,7 +47,7 @@ std::vector<SweepPlot> wanted_plots(const SweepSettings& sweep) {
         std::size_t key = 0;
         while (key < axis.keys.size() && !is_numeric(axis, key)) ++key;
         if (key == axis.keys.size()) continue;
-        for (const char* metric : {"depth_mae_m", "mask_iou_best", "seconds"}) {
+        for (const char* metric : {"depth_mae_m", "fscore_10mm", "seconds"}) {
             plots.push_back({metric, axis.keys[key]});
         }
     }
@@ -58,8 +58,9 @@ std::vector<SweepPlot> wanted_plots(const SweepSettings& sweep) {
 std::vector<std::string> known_metrics() {
     std::vector<std::string> names;
     nlos::Metrics metrics;
-    for_each_field(metrics,
-                   [&](const char* name, auto&, const char*) { names.emplace_back(name); });
+    for_each_field(metrics, [&](const char* name, auto&, const char*) {
+        if (!nlos::looks_at_truth(name)) names.emplace_back(name);
+    });
     SweepResult result;
     for_each_field(result, [&](const std::string& name, auto&, const char*) {
         if (name.starts_with("seconds")) names.push_back(name);

@@ -103,7 +103,9 @@ SweepResult SweepRunner::score(const SweepRun& run, const core::Progress& progre
     append(found.warnings, result.warnings);
     result.seconds_reconstruct = found.seconds;
     result.method = found.method;
-    result.metrics = nlos::compare_to_truth(found, truth_->depth_map(found.volume.axes));
+    const core::TrueSurface truth = truth_->surface(found.volume.axes);
+    if (const auto warning = nlos::coarse_truth_warning(truth)) result.warnings.push_back(*warning);
+    result.metrics = nlos::compare_to_truth(found, truth);
     return result;
 }
 

@@ -66,7 +66,7 @@ void for_each_field(SweepSettings& sweep, Visitor&& visit) {
           core::at_least(1, "runs of every point of the grid, each with a noise.seed of its own"));
     visit("plots",
           sweep.plots,
-          "list of {metric, against}; null: depth_mae_m, mask_iou_best and seconds against every "
+          "list of {metric, against}; null: depth_mae_m, fscore_10mm and seconds against every "
           "key with several numbers");
 }
 

@@ -76,8 +76,8 @@ Table headline_table(const SweepSettings& sweep, const Json& rows) {
     }
     for (const char* key : {"depth_mae_m",
                             "depth_coverage",
-                            "mask_iou_best",
-                            "fscore",
+                            "mask_iou_stated",
+                            "fscore_10mm",
                             "seconds_render",
                             "seconds_reconstruct",
                             "failed"}) {

@@ -15,16 +15,11 @@ namespace nlos {
 namespace {
 
 constexpr double kMaskFraction = 0.2;
-
-/// The neighbour distance of evenly spaced voxel centres; 0 for a single one.
-double pitch_m(const std::vector<double>& centres_m) {
-    if (centres_m.size() < 2) return 0.0;
-    return std::abs(centres_m.back() - centres_m.front()) /
-           static_cast<double>(centres_m.size() - 1);
-}
+constexpr double kFixedThreshold_m = 0.01;  // the same for every grid and method
 
 double voxel_diagonal_m(const VolumeAxes& axes) {
-    return std::hypot(pitch_m(axes.x_m), pitch_m(axes.y_m), pitch_m(axes.z_m));
+    return std::hypot(
+        core::spacing_m(axes.x_m), core::spacing_m(axes.y_m), core::spacing_m(axes.z_m));
 }
 
 /// Throws unless both axes have the same centres, within a thousandth of their distance.
@@ -37,7 +32,7 @@ void check_same_axis(const std::vector<double>& found,
     if (found.size() != wanted.size()) {
         refuse(fmt::format("found {} values against {}", found.size(), wanted.size()));
     }
-    const double tolerance = 1e-6 + 1e-3 * pitch_m(wanted);
+    const double tolerance = 1e-6 + 1e-3 * core::spacing_m(wanted);
     for (std::size_t i = 0; i < found.size(); ++i) {
         if (std::abs(found[i] - wanted[i]) <= tolerance) continue;
         refuse(fmt::format("value {} is {} m against {} m", i, found[i], wanted[i]));
@@ -67,10 +62,16 @@ Mask foreground_of(const core::DepthMap& map) {
     return mask;
 }
 
+Covered covered_of(const core::TrueSurface& truth) {
+    Covered covered(truth.columns.size());
+    for (std::size_t i = 0; i < covered.size(); ++i) covered[i] = truth.covered(i);
+    return covered;
+}
+
 /// Overlap of the masks that a result's projection and depths give with a true one.
 void score_masks(const std::vector<float>& projection,
                  const core::DepthMap& depth,
-                 const Mask& truth,
+                 const Covered& truth,
                  Metrics& metrics) {
     metrics.mask_iou = mask_iou(mask_above_fraction(projection, kMaskFraction), truth);
     if (depth.depth_m.size() == truth.size()) {
@@ -107,14 +108,13 @@ void score_angles(const std::vector<double>& angles_deg, Metrics& metrics) {
 
 void score_depth(const core::DepthMap& depth,
                  const core::DepthMap& truth,
+                 const Covered& covered,
                  const std::vector<std::size_t>& columns,
                  Metrics& metrics) {
     if (columns.empty()) return;
-    const auto true_columns = std::count_if(truth.depth_m.begin(),
-                                            truth.depth_m.end(),
-                                            [](double depth_m) { return std::isfinite(depth_m); });
-    metrics.depth_coverage =
-        static_cast<double>(columns.size()) / static_cast<double>(true_columns);
+    double found = 0.0;
+    for (const std::size_t i : columns) found += covered[i];
+    metrics.depth_coverage = found / std::accumulate(covered.begin(), covered.end(), 0.0);
     std::vector<double> errors_m;
     double sum = 0.0;
     double squares = 0.0;
@@ -173,20 +173,36 @@ void record_cost(const Reconstruction& result, Metrics& metrics) {
 }
 
 /// The picture an eye at the wall would see: albedo of the surface, 0 in the background.
-std::vector<float> albedo_image(const core::DepthMap& map) {
-    std::vector<float> image(map.depth_m.size(), 0.0F);
+std::vector<float> albedo_image(const core::TrueSurface& truth) {
+    std::vector<float> image(truth.columns.size(), 0.0F);
     for (std::size_t i = 0; i < image.size(); ++i) {
-        if (!map.is_foreground(i)) continue;
-        image[i] = map.albedo.empty() ? 1.0F : static_cast<float>(map.albedo[i]);
+        for (const core::ColumnSurface& surface : truth.columns[i]) {
+            image[i] += static_cast<float>(surface.albedo * surface.fraction);
+        }
     }
     return image;
+}
+
+/// Fractions of the true and of the found surface within a distance, and their harmonic mean.
+struct Matches {
+    double completeness, accuracy, fscore;
+};
+
+Matches matches_within(const std::vector<double>& to_truth_m,
+                       const std::vector<double>& to_result_m,
+                       double threshold_m) {
+    const double accuracy = fraction_within(to_truth_m, threshold_m);
+    const double completeness = fraction_within(to_result_m, threshold_m);
+    const double sum = accuracy + completeness;
+    return {completeness, accuracy, sum > 0.0 ? 2.0 * accuracy * completeness / sum : 0.0};
 }
 
 }  // namespace
 
 Metrics compare_points(const core::PointCloud& result,
                        const core::PointCloud& truth,
-                       double threshold_m) {
+                       double threshold_m,
+                       std::optional<double> resolution_m) {
     Metrics metrics;
     if (result.positions.empty() || truth.positions.empty()) return metrics;
 
@@ -194,15 +210,22 @@ Metrics compare_points(const core::PointCloud& result,
         core::nearest_neighbours(result.positions, truth.positions);
     const core::NearestNeighbours to_result =
         core::nearest_neighbours(truth.positions, result.positions);
-    metrics.chamfer_m = 0.5 * (mean(to_truth.distances_m) + mean(to_result.distances_m));
+    metrics.accuracy_m = mean(to_truth.distances_m);
+    metrics.chamfer_m = 0.5 * (*metrics.accuracy_m + mean(to_result.distances_m));
 
-    const double accuracy = fraction_within(to_truth.distances_m, threshold_m);
-    const double completeness = fraction_within(to_result.distances_m, threshold_m);
-    const double sum = accuracy + completeness;
-    metrics.fscore = sum > 0.0 ? 2.0 * accuracy * completeness / sum : 0.0;
-    metrics.completeness = completeness;
-    metrics.accuracy = accuracy;
+    const auto within = [&](double distance_m) {
+        return matches_within(to_truth.distances_m, to_result.distances_m, distance_m);
+    };
+    const Matches matches = within(threshold_m);
+    metrics.fscore = matches.fscore;
+    metrics.completeness = matches.completeness;
+    metrics.accuracy = matches.accuracy;
     metrics.fscore_threshold_m = threshold_m;
+    metrics.fscore_10mm = within(kFixedThreshold_m).fscore;
+    if (resolution_m && std::isfinite(*resolution_m)) {
+        metrics.resolution_m = resolution_m;
+        metrics.fscore_resolution = within(*resolution_m).fscore;
+    }
 
     const bool both_have_normals = result.normals.size() == result.positions.size() &&
                                    truth.normals.size() == truth.positions.size();
@@ -219,29 +242,42 @@ Metrics compare_points(const core::PointCloud& result,
 }
 
 Metrics compare_to_truth(const Reconstruction& result,
-                         const core::DepthMap& truth,
+                         const core::TrueSurface& truth,
                          std::optional<double> threshold_m) {
     const VolumeAxes& axes = result.volume.axes;
-    check_same_axis(axes.x_m, truth.x_m, "x");
-    check_same_axis(axes.y_m, truth.y_m, "y");
-    check_same_wall(axes.world_from_wall, truth.world_from_wall);
+    check_same_axis(axes.x_m, truth.main.x_m, "x");
+    check_same_axis(axes.y_m, truth.main.y_m, "y");
+    check_same_wall(axes.world_from_wall, truth.main.world_from_wall);
     const std::vector<float> projection = max_projection(result.volume);
-    const std::vector<std::size_t> columns = common_columns(result.depth, truth);
-    const core::PointCloud true_points = surface_points(truth);
+    const core::DepthMap nearest = core::nearest_surfaces(truth, result.depth);
+    const std::vector<std::size_t> columns = common_columns(result.depth, nearest);
+    const Covered covered = covered_of(truth);
 
-    Metrics metrics =
-        compare_points(result.points, true_points, threshold_m.value_or(voxel_diagonal_m(axes)));
-    score_depth(result.depth, truth, columns, metrics);
-    score_masks(projection, result.depth, foreground_of(truth), metrics);
-    score_normals(result.volume, truth, columns, metrics);
+    Metrics metrics = compare_points(core::dense_points(result.depth, truth.per_side),
+                                     truth.samples,
+                                     threshold_m.value_or(voxel_diagonal_m(axes)),
+                                     result.resolution_m);
+    score_depth(result.depth, nearest, covered, columns, metrics);
+    score_masks(projection, result.depth, covered, metrics);
+    score_normals(result.volume, nearest, columns, metrics);
     score_image(projection, albedo_image(truth), axes, metrics);
     const auto peak = peak_world(result.volume);
-    if (peak && !true_points.positions.empty()) {
+    if (peak && !truth.samples.positions.empty()) {
         metrics.peak_distance_m =
-            core::nearest_neighbours({*peak}, true_points.positions).distances_m.front();
+            core::nearest_neighbours({*peak}, truth.samples.positions).distances_m.front();
     }
     record_cost(result, metrics);
     return metrics;
+}
+
+std::optional<std::string> coarse_truth_warning(const core::TrueSurface& truth) {
+    constexpr double kAccepted = 0.02;
+    if (truth.lost_at_half <= kAccepted) return std::nullopt;
+    return fmt::format(
+        "the truth changes with its resolution: {:.0f} % of the surface is too thin for a view "
+        "half "
+        "as fine; a larger ground_truth.depth_resolution shows it as it is",
+        100.0 * truth.lost_at_half);
 }
 
 Metrics compare_volumes(const Reconstruction& result,
@@ -255,12 +291,19 @@ Metrics compare_volumes(const Reconstruction& result,
     const std::vector<float> projection = max_projection(result.volume);
     const std::vector<float> reference_projection = max_projection(reference.volume);
     const Mask reference_mask = mask_above_fraction(reference_projection, kMaskFraction);
+    const Mask reference_depths = foreground_of(reference.depth);
 
-    Metrics metrics = compare_points(
-        result.points, reference.points, threshold_m.value_or(voxel_diagonal_m(axes)));
-    score_depth(
-        result.depth, reference.depth, common_columns(result.depth, reference.depth), metrics);
-    score_masks(projection, result.depth, reference_mask, metrics);
+    Metrics metrics = compare_points(result.points,
+                                     reference.points,
+                                     threshold_m.value_or(voxel_diagonal_m(axes)),
+                                     reference.resolution_m);
+    score_depth(result.depth,
+                reference.depth,
+                Covered(reference_depths.begin(), reference_depths.end()),
+                common_columns(result.depth, reference.depth),
+                metrics);
+    score_masks(
+        projection, result.depth, Covered(reference_mask.begin(), reference_mask.end()), metrics);
     score_image(projection, reference_projection, axes, metrics);
     const auto peak = peak_world(result.volume);
     const auto reference_peak = peak_world(reference.volume);

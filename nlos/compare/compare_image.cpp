@@ -73,22 +73,25 @@ Mask mask_above_fraction(const std::vector<float>& image, double fraction) {
     return mask;
 }
 
-std::optional<double> mask_iou(const Mask& a, const Mask& b) {
-    std::size_t count_a = 0;
-    std::size_t count_b = 0;
-    std::size_t both = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        count_a += a[i];
-        count_b += b[i];
-        both += a[i] & b[i];
+std::optional<double> mask_iou(const Mask& mask, const Covered& truth) {
+    double found = 0.0;
+    double right = 0.0;
+    double missed = 0.0;
+    for (std::size_t i = 0; i < mask.size(); ++i) {
+        if (mask[i] == 0) {
+            missed += truth[i];
+        } else {
+            found += 1.0;
+            right += truth[i] > 0.0 ? 1.0 : 0.0;
+        }
     }
-    if (count_a == 0 || count_b == 0) return std::nullopt;
-    return static_cast<double>(both) / static_cast<double>(count_a + count_b - both);
+    if (!(found > 0.0) || !(right + missed > 0.0)) return std::nullopt;
+    return right / (found + missed);
 }
 
-std::optional<ThresholdedMask> best_mask(const std::vector<float>& image, const Mask& truth) {
-    const auto wanted = static_cast<std::size_t>(std::count(truth.begin(), truth.end(), 1));
-    if (wanted == 0 || !(largest(image) > 0.0F)) return std::nullopt;
+std::optional<ThresholdedMask> best_mask(const std::vector<float>& image, const Covered& truth) {
+    double missed = std::accumulate(truth.begin(), truth.end(), 0.0);
+    if (!(missed > 0.0) || !(largest(image) > 0.0F)) return std::nullopt;
 
     // Lowering the threshold adds pixels in falling order of value; only between two different
     // values is there a threshold.
@@ -98,11 +101,13 @@ std::optional<ThresholdedMask> best_mask(const std::vector<float>& image, const 
         return image[i] > image[j];
     });
     ThresholdedMask best;
-    std::size_t both = 0;
+    std::size_t right = 0;
     for (std::size_t taken = 1; taken <= order.size(); ++taken) {
-        both += truth[order[taken - 1]];
+        right += truth[order[taken - 1]] > 0.0 ? 1 : 0;
+        missed -= truth[order[taken - 1]];
         if (taken < order.size() && image[order[taken]] == image[order[taken - 1]]) continue;
-        const double iou = static_cast<double>(both) / static_cast<double>(wanted + taken - both);
+        const double iou =
+            static_cast<double>(right) / (static_cast<double>(taken) + std::max(0.0, missed));
         if (iou > best.iou) best = {iou, double{image[order[taken - 1]]} / largest(image)};
     }
     return best;

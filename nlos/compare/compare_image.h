@@ -11,11 +11,17 @@ namespace nlos {
 /// One truth value per pixel, 0 or 1 (not vector<bool>: its elements have no address).
 using Mask = std::vector<unsigned char>;
 
+/// Per pixel the fraction of it that is foreground, in [0, 1].
+using Covered = std::vector<double>;
+
 /// Pixels above `fraction` of the largest value; all 0 when no value is positive.
 Mask mask_above_fraction(const std::vector<float>& image, double fraction);
 
-/// Intersection over union; empty when either mask is.
-std::optional<double> mask_iou(const Mask& a, const Mask& b);
+/// Intersection over union of a mask with a true one; empty when either is.
+///
+/// A pixel of which any part is foreground is rightly in the mask; one that is left out is missed
+/// by the part of it that is foreground.
+std::optional<double> mask_iou(const Mask& mask, const Covered& truth);
 
 /// The mask of an image that a threshold cuts out.
 struct ThresholdedMask {
@@ -26,9 +32,9 @@ struct ThresholdedMask {
 /// The largest intersection over union that any threshold on `image` reaches, found exactly.
 ///
 /// image    one value per pixel
-/// truth    the mask to reach, as many pixels
+/// truth    what to reach, as many pixels; see mask_iou()
 /// returns  iou in (0, 1]; empty when the mask is empty or no value is positive
-std::optional<ThresholdedMask> best_mask(const std::vector<float>& image, const Mask& truth);
+std::optional<ThresholdedMask> best_mask(const std::vector<float>& image, const Covered& truth);
 
 /// The image divided by its largest value, negative values set to 0; empty when none is positive.
 std::optional<std::vector<double>> normalised(const std::vector<float>& image);

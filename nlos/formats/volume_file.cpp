@@ -133,6 +133,16 @@ core::PointCloud read_points(const ArrayReader& file) {
     return points;
 }
 
+/// The normals of the points, which are the foreground columns in order.
+void give_normals(const core::PointCloud& points, core::DepthMap& depth) {
+    if (points.normals.empty()) return;
+    depth.normals.assign(depth.depth_m.size(), Vec3::Zero());
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < depth.depth_m.size() && next < points.normals.size(); ++i) {
+        if (depth.is_foreground(i)) depth.normals[i] = points.normals[next++];
+    }
+}
+
 ReconstructSettings read_settings(const ArrayReader& file) {
     ReconstructSettings settings;
     const auto text = file.text_attribute("/", "settings");
@@ -188,6 +198,9 @@ void write_volume(const std::string& path, const Reconstruction& reconstruction)
     const auto peak_bytes = static_cast<double>(reconstruction.peak_bytes);
     file.write_attribute("/", "seconds", {}, {&reconstruction.seconds, 1});
     file.write_attribute("/", "peak_bytes", {}, {&peak_bytes, 1});
+    if (reconstruction.resolution_m) {
+        file.write_attribute("/", "resolution_m", {}, {&*reconstruction.resolution_m, 1});
+    }
     file.finish();
 }
 
@@ -211,6 +224,7 @@ Reconstruction read_volume(const std::string& path) {
     result.depth_sigma_m = read_sigmas(file, result.depth);
     result.surface_probability = read_probabilities(file, columns);
     result.points = read_points(file);
+    give_normals(result.points, result.depth);
     result.method = file.text_attribute("/", "method").value_or("");
     result.reason = file.text_attribute("/", "reason").value_or("");
     result.settings = read_settings(file);
@@ -219,6 +233,9 @@ Reconstruction read_volume(const std::string& path) {
     result.seconds = read_number(file, "seconds");
     result.peak_bytes =
         static_cast<std::uint64_t>(std::min(read_number(file, "peak_bytes"), 0x1p63));
+    if (const double resolution_m = read_number(file, "resolution_m"); resolution_m > 0.0) {
+        result.resolution_m = resolution_m;
+    }
     return result;
 }
 

@@ -54,12 +54,17 @@ double PlaceResolution::at(const core::Vec3& place) const {
     return least > kRounding ? told_m_ / std::sqrt(least) : std::numeric_limits<double>::infinity();
 }
 
-std::optional<std::string> why_no_directions(const PreparedCapture& prepared) {
+std::optional<LightResolution> resolve_light(const PreparedCapture& prepared) {
     const std::optional<double> range_m = middle_range_m(prepared);
     if (!range_m || !(*range_m > 0.0)) return std::nullopt;
-    const double resolution_m =
-        PlaceResolution(prepared.scan, prepared.time_axis.bin_width_m)
-            .at(prepared.wall.world_from_wall * core::Vec3(0.0, 0.0, *range_m));
+    const PlaceResolution resolution(prepared.scan, prepared.time_axis.bin_width_m);
+    return LightResolution{
+        *range_m, resolution.at(prepared.wall.world_from_wall * core::Vec3(0.0, 0.0, *range_m))};
+}
+
+std::optional<std::string> why_no_directions(const PreparedCapture& prepared) {
+    if (!prepared.light) return std::nullopt;
+    const auto& [range_m, resolution_m] = *prepared.light;
     const WallFrame& wall = prepared.wall;
     const double width_m = wall.max_m[0] - wall.min_m[0];
     const double height_m = wall.max_m[1] - wall.min_m[1];
@@ -67,7 +72,7 @@ std::optional<std::string> why_no_directions(const PreparedCapture& prepared) {
     return fmt::format("wall points over {:.3g} x {:.3g} m tell places {:.2g} m away {}",
                        width_m,
                        height_m,
-                       *range_m,
+                       range_m,
                        std::isfinite(resolution_m)
                            ? fmt::format("to no better than {:.2g} m", resolution_m)
                            : "in no more than two directions");

@@ -30,8 +30,12 @@ class PlaceResolution {
     double told_m_;
 };
 
-/// Why a capture's light, at its middle range before the middle of the wall points, is told apart
-/// over no less than all of the points' extent, for people; nothing where it is, and in the dark.
+/// How well a capture's light is told apart at its middle range, before the middle of the wall
+/// points, by lengths that differ by a bin; nothing in the dark.
+std::optional<LightResolution> resolve_light(const PreparedCapture& prepared);
+
+/// Why `prepared.light` is told apart over no less than all of the points' extent, for people;
+/// nothing where it is, and in the dark.
 std::optional<std::string> why_no_directions(const PreparedCapture& prepared);
 
 }  // namespace nlos

@@ -5,9 +5,16 @@
 #include "nlos/reconstruction/reconstruct_settings.h"
 #include "renderer/core/capture/capture.h"
 
+#include <optional>
 #include <string>
 
 namespace nlos {
+
+/// Where half of a scan's light has come, and how well it is told from where.
+struct LightResolution {
+    double range_m;       ///< from the middle of the wall points, half a path length
+    double resolution_m;  ///< told apart there in any direction; infinite: in none
+};
 
 /// What a method reconstructs from: a capture, or what cropping and conversion made of it.
 struct PreparedCapture {
@@ -18,6 +25,7 @@ struct PreparedCapture {
     const core::Transient* capture_transient = nullptr;
     core::ObservedBins observed;       ///< of transient()
     double unobserved_before_m = 0.0;  ///< path length cut off before the axis: nobody looked there
+    std::optional<LightResolution> light;  ///< as captured; nothing in the dark
     WallFrame wall;
     std::string conversion;  ///< in words, when the scan was converted
 

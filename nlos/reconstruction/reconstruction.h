@@ -8,6 +8,7 @@
 #include "renderer/core/settings/boxed_json.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,11 @@ struct Reconstruction {
     std::vector<double> surface_probability;  ///< per column [x][y]; empty: not given
     std::vector<double> depth_sigma_m;  ///< of `depth`, NaN = background; empty: noise not known
     core::PointCloud points;  ///< foreground of `depth` in world coordinates, normals to the wall
-    std::string method;       ///< the one that ran
-    std::string reason;       ///< why `auto` took it
+    /// How far apart the scan tells positions at the middle of its light, in the direction told
+    /// worst [m]: the same for every method; nothing where no distance is enough or nobody knows.
+    std::optional<double> resolution_m;
+    std::string method;                 ///< the one that ran
+    std::string reason;                 ///< why `auto` took it
     std::vector<std::string> findings;  ///< what `auto` found looking at the capture, a line each
     ReconstructSettings settings;       ///< with every choice filled in
     std::vector<std::string> warnings;  ///< what looks wrong about the capture

@@ -3,10 +3,16 @@
 
 #include "renderer/core/system/parallel.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace renderer {
 namespace {
 
 using core::Vec3;
+
+constexpr double kSamplesPerSide = 4.0;  // of a column, at least
+constexpr double kMostSamples = 4e6;     // of all columns
 
 std::optional<SurfacePoint> first_hidden_hit(const Scene& scene, Vec3 from, const Vec3& direction) {
     Vec3 normal = direction;
@@ -52,6 +58,34 @@ core::DepthMap trace_depth_map(const Scene& scene,
         }
     });
     return map;
+}
+
+core::TrueSurface trace_true_surface(const Scene& scene,
+                                     const core::Transform& world_from_wall,
+                                     const std::vector<double>& x_m,
+                                     const std::vector<double>& y_m,
+                                     double spacing_m) {
+    const double column_m = std::max(core::spacing_m(x_m), core::spacing_m(y_m));
+    const auto columns = static_cast<double>(x_m.size() * y_m.size());
+    const auto most = std::max(1.0, std::floor(std::sqrt(kMostSamples / columns)));
+    const auto wanted = std::max(kSamplesPerSide, std::ceil(column_m / spacing_m));
+    const auto per_side = static_cast<std::size_t>(std::min(wanted, most));
+    return {trace_depth_map(scene,
+                            world_from_wall,
+                            core::parts_of_cells(x_m, per_side),
+                            core::parts_of_cells(y_m, per_side)),
+            per_side};
+}
+
+core::TrueSurface trace_true_surface(const Scene& scene,
+                                     const SceneDescription& description,
+                                     const core::Transform& world_from_wall,
+                                     const std::vector<double>& x_m,
+                                     const std::vector<double>& y_m) {
+    const auto& size_m = description.relay_wall.size_m;
+    const auto& [nx, ny] = description.ground_truth.depth_resolution;
+    return trace_true_surface(
+        scene, world_from_wall, x_m, y_m, std::min(size_m[0] / nx, size_m[1] / ny));
 }
 
 core::DepthMap trace_ground_truth(const Scene& scene, const SceneDescription& description) {

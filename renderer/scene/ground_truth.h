@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "renderer/core/depth_map.h"
+#include "renderer/core/true_surface.h"
 #include "renderer/scene/scene.h"
 
 #include <vector>
@@ -20,7 +20,24 @@ core::DepthMap trace_depth_map(const Scene& scene,
                                std::vector<double> x_m,
                                std::vector<double> y_m);
 
-/// The same with the wall's own frame, over its whole size, at cell centres.
+/// What reconstructions on these columns are scored against.
+///
+/// spacing_m   the samples in each column's footprint are no further apart than this [m], nor than
+///             a fourth of a column where that needs no more than some millions
+core::TrueSurface trace_true_surface(const Scene& scene,
+                                     const core::Transform& world_from_wall,
+                                     const std::vector<double>& x_m,
+                                     const std::vector<double>& y_m,
+                                     double spacing_m);
+
+/// The same, spaced as the scene's ground_truth.depth_resolution says of the wall.
+core::TrueSurface trace_true_surface(const Scene& scene,
+                                     const SceneDescription& description,
+                                     const core::Transform& world_from_wall,
+                                     const std::vector<double>& x_m,
+                                     const std::vector<double>& y_m);
+
+/// A depth map in the wall's own frame, over its whole size, at cell centres.
 core::DepthMap trace_ground_truth(const Scene& scene, const SceneDescription& description);
 
 }  // namespace renderer

@@ -34,6 +34,7 @@ inline nlos::Reconstruction example_reconstruction() {
     result.settings.method = nlos::Method::Lct;
     result.settings.volume.voxels = {3, 2, 4};
     result.settings.snr = 0.2;
+    result.resolution_m = 0.012;
     result.seconds = 1.5;
     result.peak_bytes = 123456789;
     return result;

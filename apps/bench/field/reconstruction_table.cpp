@@ -30,6 +30,7 @@ using std::optional;
 const std::string kClean = "clean";
 constexpr double kCleanError = 1e-3;  // relative L2 of captures without noise
 constexpr std::uint64_t kNoiseSeed = 1;
+constexpr double kSamplesPerColumn = 8.0;  // of the truth, along x and along y
 
 /// A scene seen from one grid of points in one pattern.
 struct ReconstructedScene {
@@ -88,7 +89,7 @@ optional<double> times(optional<double> value, double factor) {
     return value ? optional<double>(factor * *value) : std::nullopt;
 }
 
-void score(const MethodVolume& result, const core::DepthMap& truth, ReconstructionRow& row) {
+void score(const MethodVolume& result, const core::TrueSurface& truth, ReconstructionRow& row) {
     nlos::Reconstruction scored;
     scored.volume = result.volume;
     scored.depth = peak_depths(result.volume);
@@ -251,13 +252,17 @@ std::vector<ReconstructionRow> measure_reconstructions(
         const BenchScene scene = scene_of(task);
         const core::Capture clean = clean_capture(scene);
         // Scans that are converted to confocal ones have columns of their own.
-        core::DepthMap truth;
-        const auto truth_for = [&](const nlos::VolumeAxes& axes) -> const core::DepthMap& {
-            if (truth.x_m != axes.x_m || truth.y_m != axes.y_m) {
-                truth = renderer::trace_depth_map(
-                    scene.scene(), axes.world_from_wall, axes.x_m, axes.y_m);
+        std::optional<core::TrueSurface> truth;
+        const auto truth_for = [&](const nlos::VolumeAxes& axes) -> const core::TrueSurface& {
+            if (!truth || truth->main.x_m.size() != axes.x_m.size() ||
+                truth->main.y_m.size() != axes.y_m.size()) {
+                truth = renderer::trace_true_surface(scene.scene(),
+                                                     axes.world_from_wall,
+                                                     axes.x_m,
+                                                     axes.y_m,
+                                                     core::spacing_m(axes.x_m) / kSamplesPerColumn);
             }
-            return truth;
+            return *truth;
         };
         for (const std::string& light : task.lights) {
             SharedCapture capture(baselines,
@@ -273,8 +278,8 @@ std::vector<ReconstructionRow> measure_reconstructions(
                     task.scene, task.pattern, task.points, light, method.program, method.method};
                 const MethodVolume result = capture.run(method);
                 if (enter_run(result.run, row)) {
-                    const core::DepthMap& seen = truth_for(result.volume.axes);
-                    if (panels.empty()) panels.push_back(truth_panel(seen));
+                    const core::TrueSurface& seen = truth_for(result.volume.axes);
+                    if (panels.empty()) panels.push_back(truth_panel(seen.main));
                     panels.push_back(projection_panel(method, result.volume));
                     score(result, seen, row);
                 }

@@ -106,8 +106,7 @@ core::Json score_of(const core::Capture& capture,
                             fmt::format("solver.spot_m={}", spot_m)})
             .result;
     const SceneTruth truth(wall_of(kWallSide), letter());
-    const nlos::Metrics metrics =
-        nlos::compare_to_truth(result, truth.depth_map(result.volume.axes));
+    const nlos::Metrics metrics = nlos::compare_to_truth(result, truth.surface(result.volume.axes));
     return {{"photons_per_point", photons},
             {"spot_m", spot_m},  // full width at half maximum on the wall
             {"method", method},

@@ -64,7 +64,7 @@ class Range {
                       NoiseScore& score) const {
         const nlos::Reconstruction result = run_reconstruction(capture, overrides).result;
         const nlos::Metrics metrics =
-            nlos::compare_to_truth(result, truth_.depth_map(result.volume.axes));
+            nlos::compare_to_truth(result, truth_.surface(result.volume.axes));
         constexpr double kNothingFound_m = 1.0;
         score.depth_mae_m += metrics.depth_mae_m.value_or(kNothingFound_m) / repeats;
         score.mask_iou += metrics.mask_iou.value_or(0.0) / repeats;

@@ -104,14 +104,14 @@ struct AccuracyTarget {
 struct Exam {
     std::string name;
     core::Capture capture;
-    std::function<core::DepthMap(const nlos::VolumeAxes&)> truth;
+    std::function<core::TrueSurface(const nlos::VolumeAxes&)> truth;
 };
 
 Exam exam_of_scene(const std::string& folder, const std::string& name) {
     const std::string path = folder + "/" + name + "/scene.json";
     const auto truth = std::make_shared<SceneTruth>(path);
     return {name, BenchScene(path).render(), [truth](const nlos::VolumeAxes& axes) {
-                return truth->depth_map(axes);
+                return truth->surface(axes);
             }};
 }
 

@@ -40,6 +40,7 @@ TEST(VolumeFile, EverythingSurvivesTheRoundTrip) {
     EXPECT_EQ(read.depth.point_world(1, 0), written.points.positions[0]);
     EXPECT_EQ(read.points.positions, written.points.positions);
     EXPECT_EQ(read.points.normals, written.points.normals);
+    EXPECT_EQ(read.resolution_m, written.resolution_m);
     EXPECT_EQ(read.method, written.method);
     EXPECT_EQ(read.reason, written.reason);
     EXPECT_EQ(core::write_value(read.settings), core::write_value(written.settings));
@@ -54,10 +55,12 @@ TEST(VolumeFile, AnEmptyResultSurvivesTheRoundTrip) {
     written.volume.normals.clear();
     written.depth_sigma_m.clear();
     written.surface_probability.clear();
+    written.resolution_m.reset();
     write_volume(folder.file("v.h5"), written);
     const Reconstruction read = read_volume(folder.file("v.h5"));
     EXPECT_TRUE(read.points.positions.empty());
     EXPECT_TRUE(read.volume.normals.empty());
+    EXPECT_FALSE(read.resolution_m);
     EXPECT_TRUE(read.depth_sigma_m.empty());
     EXPECT_TRUE(read.surface_probability.empty());
 }

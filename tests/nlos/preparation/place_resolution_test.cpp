@@ -72,6 +72,22 @@ TEST(PlaceResolution, NoMethodStatesSurfacesWhereTheScanTellsNone) {
     }
 }
 
+// A scatterer 0.6 m before the middle of points over 0.8 m; see above for the expected value.
+TEST(PlaceResolution, IsReportedAlikeByEveryMethod) {
+    const core::Capture capture = point_capture({16, 16}, 0.05);
+    const double root_mean_square = 0.05 * std::sqrt((16.0 * 16.0 - 1.0) / 12.0);
+    const double expected = kBinWidth_m * 0.6 / (2.0 * root_mean_square);
+    std::optional<double> first;
+    for (const nlos_test::MethodCase& method : nlos_test::every_method()) {
+        const Reconstruction result = reconstruct(capture, method.settings(), {});
+        ASSERT_TRUE(result.resolution_m) << method.name;
+        if (!first) first = result.resolution_m;
+        EXPECT_EQ(*result.resolution_m, *first) << method.name;
+    }
+    EXPECT_NEAR(*first / expected, 1.0, 0.15) << "to first order in the aperture over the range";
+    EXPECT_FALSE(reconstruct(point_capture({40, 1}, 0.02), {}, {}).resolution_m);
+}
+
 TEST(PlaceResolution, AutoTakesBackprojectionThere) {
     EXPECT_EQ(reconstruct(point_capture({40, 1}, 0.02), {}, {}).method, "bp");
     EXPECT_EQ(reconstruct(point_capture({8, 8}, 0.0025), {}, {}).method, "bp");

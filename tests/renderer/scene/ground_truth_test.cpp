@@ -63,4 +63,31 @@ TEST(GroundTruth, FollowsThePoseOfTheWall) {
     }
 }
 
+// A bar 40 mm high, 0.8 m before the wall, between the centres of columns 0.1 m wide.
+TEST(GroundTruth, SeesWhatFallsBetweenColumns) {
+    const auto description = description_with(Vec3::Zero(), Vec3::UnitZ(), Vec3::UnitY());
+    renderer::SceneGeometry geometry;
+    geometry.objects.push_back(test_support::parallelogram_object(
+        {Vec3(-0.45, -0.02, 0.8), Vec3(0.9, 0, 0), Vec3(0, 0.04, 0), 0.3}));
+    const core::Scan scan = renderer::make_scan(description);
+    const renderer::Scene scene(std::move(geometry), scan, description.relay_wall);
+    std::vector<double> centres_m;
+    for (int i = 0; i < 10; ++i) centres_m.push_back(-0.45 + 0.1 * i);
+    const core::Transform wall = description.relay_wall.world_from_wall();
+    EXPECT_TRUE(surface_points(renderer::trace_depth_map(scene, wall, centres_m, centres_m))
+                    .positions.empty());
+    const core::TrueSurface truth =
+        renderer::trace_true_surface(scene, wall, centres_m, centres_m, 0.005);
+    EXPECT_EQ(truth.per_side, 20U);
+    for (const std::size_t ix : {2U, 7U}) {
+        for (const std::size_t iy : {4U, 5U}) {
+            const auto& column = truth.columns[truth.main.index(ix, iy)];
+            ASSERT_EQ(column.size(), 1U);
+            EXPECT_NEAR(column[0].depth_m, 0.8, 1e-9);
+            EXPECT_NEAR(column[0].fraction, 0.2, 1e-12);
+        }
+    }
+    EXPECT_EQ(truth.covered(truth.main.index(2, 3)), 0.0);
+}
+
 }  // namespace
