@@ -34,7 +34,8 @@ MethodInput input_of(const ReconstructionPlan& plan,
             progress,
             plan.observed ? &*plan.observed : nullptr,
             plan.prepared.unobserved_before_m,
-            plan.measurement};
+            plan.measurement,
+            plan.dark_from_m};
 }
 
 /// Memory that is taken beside a method's own [bytes].

@@ -238,6 +238,21 @@ void append(std::vector<std::string> more, std::vector<std::string>& texts) {
     std::ranges::move(more, std::back_inserter(texts));
 }
 
+/// Path length from which on prepared histograms are 0: the end of the last bin that holds
+/// anything, unless what is taken off leaves something in every bin.
+double dark_from_m(const PreparedCapture& prepared, const PreparationPlan& plan) {
+    const core::TimeAxis axis = plan.prepared_axis(prepared.time_axis);
+    if (plan.deconvolution || !plan.ambient_per_bin.empty()) return axis.opl_end_m();
+    int end = 0;
+    for (std::size_t pair = 0; pair < prepared.scan.num_pairs(); ++pair) {
+        const auto histogram = prepared.transient().histogram(pair);
+        int last = prepared.time_axis.num_bins;
+        while (last > end && histogram[static_cast<std::size_t>(last - 1)] == 0.0F) --last;
+        end = std::max(end, last);
+    }
+    return axis.bin_begin_m((end + plan.merge_bins - 1) / plan.merge_bins);
+}
+
 /// How far apart the captured light tells positions: by its bins or, where it is wider, by the
 /// response [m].
 std::optional<double> data_resolution_m(const PreparedCapture& prepared,
@@ -264,6 +279,7 @@ std::vector<std::string> warnings_of(const core::Capture& capture,
 
 ReconstructionPlan choose(const core::Capture& capture, Reconstruction& result) {
     ReconstructSettings& settings = result.settings;
+    const bool has_range = settings.volume.z_range_m.has_value();
     if (settings.prior == Prior::Tv &&
         (settings.method == Method::Auto || traits_of(settings).gives_way_to_prior)) {
         settings.method = kStatisticalMethod.method;
@@ -296,6 +312,8 @@ ReconstructionPlan choose(const core::Capture& capture, Reconstruction& result) 
         }
     }
     plan.axes = choose_axes(plan.prepared, plan.time_axis, settings);
+    plan.dark_from_m =
+        has_range ? plan.time_axis.opl_end_m() : dark_from_m(plan.prepared, plan.preparation);
     result.warnings = warnings_of(capture, plan, settings);
     if (beside) result.warnings.push_back(*beside);
     return plan;

@@ -15,6 +15,7 @@ struct ReconstructionPlan {
     core::TimeAxis time_axis;     ///< of prepared histograms
     core::ObservedBins observed;  ///< likewise
     Measurement measurement;      ///< what the method explains of them
+    double dark_from_m;           ///< from this path length on prepared histograms hold nothing
     VolumeAxes axes;
     FalloffTrial falloff_trial = FalloffTrial::WhereNeeded;
 

@@ -67,7 +67,10 @@ Cone make_cone(const MethodInput& input, double bins_per_bin) {
     // the background that it leaves, and on where it begins what can be told before the gate.
     const double start_m = axis.opl_start_m - input.unobserved_before_m;
     const double begin = std::max(0.0, 0.5 * (start_m - longest_segment));
-    const double end = 0.5 * (axis.opl_end_m() - shortest_segment);
+    double end = 0.5 * (axis.opl_end_m() - shortest_segment);
+    // Empty bins behind the light say that nothing is there; they change nothing before.
+    const double lit_end = 0.5 * (input.dark_from_m - shortest_segment);
+    if (lit_end - begin >= 0.5 * kMinBins * axis.bin_width_m) end = std::min(end, lit_end);
     const double num_bins = std::ceil((end - begin) / (0.5 * axis.bin_width_m) - 1e-6);
     if (!(num_bins >= 4.0)) {
         throw core::Error("method",

@@ -14,6 +14,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <vector>
 
 namespace nlos {
@@ -43,6 +44,8 @@ struct MethodInput {
     const std::vector<core::BinRange>* observed = nullptr;
     double unobserved_before_m = 0.0;  ///< path length cut off before the axis: nobody looked there
     Measurement measurement = {};      ///< what the method explains of it itself
+    /// Path length from which on every bin of every pair is 0; infinite: not known.
+    double dark_from_m = std::numeric_limits<double>::infinity();
 };
 
 /// Fewest bins from which frequency-domain methods make sense.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -99,6 +100,24 @@ std::vector<double> cell_centres(const std::vector<double>& parts_m, std::size_t
     return centres_m;
 }
 
+/// Adds the samples of a layer to their columns.
+///
+/// part   of a column's footprint that a sample stands for
+void enter_layer(const DepthMap& layer, double part, TrueSurface& truth) {
+    const std::size_t side = truth.per_side;
+    for (std::size_t ix = 0; ix < layer.x_m.size(); ++ix) {
+        for (std::size_t iy = 0; iy < layer.y_m.size(); ++iy) {
+            const std::size_t i = layer.index(ix, iy);
+            if (!layer.is_foreground(i)) continue;
+            truth.columns[truth.main.index(ix / side, iy / side)].push_back(
+                {layer.depth_m[i],
+                 layer.normals.empty() ? Vec3(Vec3::Zero()) : layer.normals[i],
+                 layer.albedo.empty() ? 1.0 : layer.albedo[i],
+                 part});
+        }
+    }
+}
+
 /// Step of depth from one column to the next along an axis; 0 where the neighbours say nothing.
 ///
 /// before, after   steps from and to the neighbours, NaN where there is none
@@ -113,27 +132,23 @@ double step_of(double before, double after, double width_m) {
 
 }  // namespace
 
-TrueSurface::TrueSurface(DepthMap measured) : TrueSurface(measured, 1) {}
+TrueSurface::TrueSurface(DepthMap measured)
+    : TrueSurface(std::vector<DepthMap>{std::move(measured)}, 1) {}
 
-TrueSurface::TrueSurface(const DepthMap& view, std::size_t side)
-    : main(cell_centres(view.x_m, side), cell_centres(view.y_m, side)),
-      samples(surface_points(view)),
+TrueSurface::TrueSurface(const std::vector<DepthMap>& layers, std::size_t side)
+    : main(cell_centres(layers.front().x_m, side), cell_centres(layers.front().y_m, side)),
       per_side(side),
-      lost_at_half(lost_at_half_of(view)) {
-    const double one_surface_m = kOneSurface * std::max(spacing_m(main.x_m), spacing_m(main.y_m));
-    const double part = 1.0 / static_cast<double>(side * side);
+      lost_at_half(lost_at_half_of(layers.front())) {
+    const DepthMap& view = layers.front();
     columns.resize(main.depth_m.size());
-    for (std::size_t ix = 0; ix < main.x_m.size() * side; ++ix) {
-        for (std::size_t iy = 0; iy < main.y_m.size() * side; ++iy) {
-            const std::size_t i = view.index(ix, iy);
-            if (!view.is_foreground(i)) continue;
-            columns[main.index(ix / side, iy / side)].push_back(
-                {view.depth_m[i],
-                 view.normals.empty() ? Vec3::Zero() : view.normals[i],
-                 view.albedo.empty() ? 1.0 : view.albedo[i],
-                 part});
-        }
+    for (const DepthMap& layer : layers) {
+        const double part = &layer == &view ? 1.0 / static_cast<double>(side * side) : 0.0;
+        enter_layer(layer, part, *this);
+        PointCloud points = surface_points(layer);
+        std::ranges::move(points.positions, std::back_inserter(samples.positions));
+        std::ranges::move(points.normals, std::back_inserter(samples.normals));
     }
+    const double one_surface_m = kOneSurface * std::max(spacing_m(main.x_m), spacing_m(main.y_m));
     for (auto& column : columns) column = surfaces_of(std::move(column), one_surface_m);
     main.world_from_wall = view.world_from_wall;
     if (!view.normals.empty()) main.normals.assign(columns.size(), Vec3::Zero());

@@ -11,13 +11,20 @@ namespace {
 using core::TriangleMesh;
 using core::Vec3;
 
-// Vertices with equal positions are one: files repeat them where normals or textures differ.
+// Vertices nearer together than a ten-millionth of the mesh are one: files repeat them where
+// normals or textures differ, and rounding parts them.
 std::vector<std::uint32_t> welded_vertices(const TriangleMesh& mesh) {
+    constexpr double kWelded = 1e-7;
+    Eigen::AlignedBox3d box;
+    for (const Vec3& vertex : mesh.vertices) box.extend(vertex);
+    const Vec3 middle = box.center();
+    const double step_m = std::max(kWelded * box.sizes().maxCoeff(), 1e-300);
     std::map<std::array<double, 3>, std::uint32_t> first;
     std::vector<std::uint32_t> welded;
-    for (const Vec3& v : mesh.vertices) {
+    for (const Vec3& vertex : mesh.vertices) {
+        const Vec3 steps = ((vertex - middle) / step_m).array().round();
         const auto index = static_cast<std::uint32_t>(welded.size());
-        welded.push_back(first.try_emplace({v.x(), v.y(), v.z()}, index).first->second);
+        welded.push_back(first.try_emplace({steps.x(), steps.y(), steps.z()}, index).first->second);
     }
     return welded;
 }
@@ -38,14 +45,32 @@ bool is_closed(const TriangleMesh& mesh) {
     });
 }
 
-double signed_volume(const TriangleMesh& mesh) {
-    const Vec3& apex = mesh.vertices.front();
-    double volume = 0.0;
+// Whose root a vertex is, of those that facets join.
+std::uint32_t root_of(std::vector<std::uint32_t>& joined, std::uint32_t vertex) {
+    while (joined[vertex] != vertex) vertex = joined[vertex] = joined[joined[vertex]];
+    return vertex;
+}
+
+// The volume that each connected part of a mesh encloses, negative where normals point inwards.
+std::vector<double> signed_volumes(const TriangleMesh& mesh) {
+    const std::vector<std::uint32_t> welded = welded_vertices(mesh);
+    std::vector<std::uint32_t> joined = welded;
     for (const auto& [a, b, c] : mesh.triangles) {
-        volume +=
-            (mesh.vertices[a] - apex).dot((mesh.vertices[b] - apex).cross(mesh.vertices[c] - apex));
+        for (const std::uint32_t other : {b, c}) {
+            joined[root_of(joined, welded[other])] = root_of(joined, welded[a]);
+        }
     }
-    return volume / 6.0;
+    std::map<std::uint32_t, double> volumes;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const std::uint32_t root = root_of(joined, welded[a]);
+        const Vec3& apex = mesh.vertices[root];
+        volumes[root] += (mesh.vertices[a] - apex)
+                             .dot((mesh.vertices[b] - apex).cross(mesh.vertices[c] - apex)) /
+                         6.0;
+    }
+    std::vector<double> values;
+    for (const auto& [root, volume] : volumes) values.push_back(volume);
+    return values;
 }
 
 int visible_side(const Object& object, std::span<const Vec3> path_ends) {
@@ -54,9 +79,10 @@ int visible_side(const Object& object, std::span<const Vec3> path_ends) {
     const auto inside = [&](const Vec3& point) { return box.contains(point); };
     if (std::ranges::any_of(path_ends, inside)) return 0;
     if (!is_closed(object.mesh)) return 0;
-    const double volume = signed_volume(object.mesh);
-    if (volume == 0.0) return 0;
-    return volume > 0.0 ? 1 : -1;
+    const std::vector<double> volumes = signed_volumes(object.mesh);
+    if (std::ranges::all_of(volumes, [](double volume) { return volume > 0.0; })) return 1;
+    if (std::ranges::all_of(volumes, [](double volume) { return volume < 0.0; })) return -1;
+    return 0;
 }
 
 }  // namespace

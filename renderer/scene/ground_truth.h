@@ -20,10 +20,11 @@ core::DepthMap trace_depth_map(const Scene& scene,
                                std::vector<double> x_m,
                                std::vector<double> y_m);
 
-/// What reconstructions on these columns are scored against.
+/// What reconstructions on these columns are scored against: what the wall sees along its normal,
+/// and behind that what it sees past it from elsewhere.
 ///
 /// spacing_m   the samples in each column's footprint are no further apart than this [m], nor than
-///             a fourth of a column where that needs no more than some millions
+///             a fourth of a column where that needs no more than a million
 core::TrueSurface trace_true_surface(const Scene& scene,
                                      const core::Transform& world_from_wall,
                                      const std::vector<double>& x_m,

@@ -135,5 +135,24 @@ TEST_P(ReconstructionLaw, TwiceTheBinsShowTheSameScene) {
               2.0 * depth_tolerance_m(kStoredPoint));
 }
 
+// Default settings: a range of depths that is asked for is looked at whole.
+TEST_P(ReconstructionLaw, EmptyBinsBehindTheLightChangeNoSurface) {
+    if (GetParam().pattern != core::ScanPattern::Confocal) return;
+    std::vector<core::DepthMap> depths;
+    for (const int more : {0, 64, 300}) {
+        core::Capture capture = dark_capture(
+            core::Transform::Identity(), {0.0, kAxis.bin_width_m, kAxis.num_bins + more});
+        nlos_test::add_scatterer(capture, kStoredPoint, 4.0);
+        depths.push_back(reconstruct(capture, GetParam().method.settings(), {}).depth);
+    }
+    for (const core::DepthMap& depth : depths) {
+        for (std::size_t i = 0; i < depth.depth_m.size(); ++i) {
+            ASSERT_EQ(depth.is_foreground(i), depths.front().is_foreground(i)) << i;
+            if (!depth.is_foreground(i)) continue;
+            EXPECT_NEAR(depth.depth_m[i], depths.front().depth_m[i], 1e-3);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace nlos

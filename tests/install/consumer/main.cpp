@@ -28,7 +28,8 @@ void run(const char* scene_path) {
     const nlos::Reconstruction result = nlos::reconstruct(rendered.capture, settings, silent);
     const nlos::VolumeAxes& axes = result.volume.axes;
     const nlos::Metrics metrics = nlos::compare_to_truth(
-        result, renderer::trace_depth_map(scene, axes.world_from_wall, axes.x_m, axes.y_m));
+        result,
+        renderer::trace_true_surface(scene, description, axes.world_from_wall, axes.x_m, axes.y_m));
     std::printf("reconstruction: depth off by %.1f mm\n", 1e3 * metrics.depth_mae_m.value_or(0));
 
     // The fit starts from the same objects, 3 cm further away.

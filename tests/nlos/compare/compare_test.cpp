@@ -199,7 +199,7 @@ core::TrueSurface halves_of(const Reconstruction& result,
             view.depth_m[view.index(ix, iy)] = depth_m[ix / 2][ix % 2];
         }
     }
-    return {view, 2};
+    return {{view}, 2};
 }
 
 TEST(Compare, EitherSideOfAnEdgeInAColumnIsRight) {
@@ -245,7 +245,7 @@ TEST(Compare, FScoresAtFixedDistancesDoNotDependOnTheGrid) {
         core::DepthMap view(core::parts_of_cells(axes.x_m, per_side),
                             core::parts_of_cells(axes.y_m, per_side));
         view.depth_m.assign(view.depth_m.size(), 0.7);
-        const Metrics metrics = compare_to_truth(result, core::TrueSurface(view, per_side));
+        const Metrics metrics = compare_to_truth(result, core::TrueSurface({view}, per_side));
         EXPECT_DOUBLE_EQ(metrics.fscore_10mm.value(), 1.0);
         EXPECT_DOUBLE_EQ(metrics.fscore_resolution.value(), 0.0);
         EXPECT_DOUBLE_EQ(metrics.resolution_m.value(), 0.005);
@@ -265,8 +265,8 @@ TEST(Compare, ATruthOfThinWiresIsSaidToChangeWithItsResolution) {
             if (ix % 8 >= 3) plates.depth_m[plates.index(ix, iy)] = 0.7 + 0.001 * double(ix);
         }
     }
-    EXPECT_NE(coarse_truth_warning({wires, 4}).value().find("50 %"), std::string::npos);
-    EXPECT_FALSE(coarse_truth_warning({plates, 4}));
+    EXPECT_NE(coarse_truth_warning({{wires}, 4}).value().find("50 %"), std::string::npos);
+    EXPECT_FALSE(coarse_truth_warning({{plates}, 4}));
 }
 
 TEST(Compare, PeakDistanceIsThatOfTheBrightestVoxel) {

@@ -44,7 +44,8 @@ TEST(TrueSurface, PartsOfCellsFillThemEvenly) {
 }
 
 TEST(TrueSurface, ASlopeIsOneSurfaceWithTheDepthOfItsMiddle) {
-    const TrueSurface truth(view_of(4, 8, [](double x, double y) { return 1.0 + 2.0 * x - y; }), 8);
+    const TrueSurface truth({view_of(4, 8, [](double x, double y) { return 1.0 + 2.0 * x - y; })},
+                            8);
     for (std::size_t i = 0; i < truth.columns.size(); ++i) {
         ASSERT_EQ(truth.columns[i].size(), 1U);
         const double x = truth.main.x_m[i / 4];
@@ -63,7 +64,7 @@ TEST(TrueSurface, WhatFallsBetweenColumnsIsSeen) {
         if (std::abs(x - 0.05) < 0.015) return 0.6;
         return x > 0.2 ? 0.9 : kNone;
     };
-    const TrueSurface truth(view_of(4, 20, depth), 20);
+    const TrueSurface truth({view_of(4, 20, depth)}, 20);
     for (const std::size_t ix : {0U, 1U}) {
         const auto& column = truth.columns[truth.main.index(ix, 0)];
         ASSERT_EQ(column.size(), 1U);
@@ -75,7 +76,7 @@ TEST(TrueSurface, WhatFallsBetweenColumnsIsSeen) {
 
 TEST(TrueSurface, NearestOfSeveralSurfacesIsTaken) {
     const auto depth = [](double x, double) { return x < 0.02 ? 0.6 : 0.9; };
-    const TrueSurface truth(view_of(2, 20, depth), 20);
+    const TrueSurface truth({view_of(2, 20, depth)}, 20);
     ASSERT_EQ(truth.columns[0].size(), 2U);
     EXPECT_DOUBLE_EQ(truth.main.depth_m[0], 0.6) << "which covers 70 %";
     DepthMap found(truth.main.x_m, truth.main.y_m);

@@ -90,4 +90,32 @@ TEST(GroundTruth, SeesWhatFallsBetweenColumns) {
     EXPECT_EQ(truth.covered(truth.main.index(2, 3)), 0.0);
 }
 
+// A plate 0.2 m behind a front one of the same shape, of which other points of the wall see all but
+// the middle; a box's rear face, which nobody sees.
+TEST(GroundTruth, SeesPastWhatHidesASurface) {
+    const auto description = description_with(Vec3::Zero(), Vec3::UnitZ(), Vec3::UnitY());
+    renderer::SceneGeometry geometry;
+    const auto plate = [&](double z) {
+        geometry.objects.push_back(test_support::parallelogram_object(
+            {Vec3(-0.1, -0.1, z), Vec3(0.2, 0, 0), Vec3(0, 0.2, 0), 0.3}));
+    };
+    plate(0.8);
+    plate(1.0);
+    plate(1.0 + 1e-3);
+    const core::Scan scan = renderer::make_scan(description);
+    const renderer::Scene scene(std::move(geometry), scan, description.relay_wall);
+    std::vector<double> centres_m;
+    for (int i = 0; i < 20; ++i) centres_m.push_back(-0.95 + 0.1 * i);
+    const core::TrueSurface truth = renderer::trace_true_surface(
+        scene, description.relay_wall.world_from_wall(), centres_m, centres_m, 0.025);
+    const auto& column = truth.columns[truth.main.index(9, 9)];
+    ASSERT_EQ(column.size(), 2U);
+    EXPECT_NEAR(column[0].depth_m, 0.8, 1e-9);
+    EXPECT_DOUBLE_EQ(column[0].fraction, 1.0);
+    EXPECT_NEAR(column[1].depth_m, 1.0, 1e-9);
+    EXPECT_EQ(column[1].fraction, 0.0) << "not seen along the normal";
+    EXPECT_NEAR(truth.main.depth_m[truth.main.index(9, 9)], 0.8, 1e-9);
+    EXPECT_DOUBLE_EQ(truth.covered(truth.main.index(9, 9)), 1.0);
+}
+
 }  // namespace
