@@ -29,6 +29,7 @@ constexpr double kStrongestBend = 1.15;     // of first light: 1 is what a path 
 constexpr double kWeakestBend = 0.7;        // edges and tips reach 1
 constexpr double kBendOfAPlane = 0.1;       // says nothing
 constexpr double kCheckSignificance = 3.0;  // standard deviations
+constexpr double kFainterFraction = 0.1;    // of a maximum, beside kFirstLightFraction
 constexpr double kFactorTolerance = 0.15;   // of what first light says of lengths
 constexpr std::size_t kMinLitValues = 16;   // fewer may be whole numbers by chance
 
@@ -146,6 +147,21 @@ std::optional<std::string> fast_onset(const core::Capture& capture,
         "change; bins look narrower than {:.4g} m (capture.bin_width_m sets them)",
         speed,
         capture.time_axis.bin_width_m);
+}
+
+/// How first light bends over the wall, which is wrong where bins or wall are, and
+/// where several surfaces share a histogram and take turns in passing a fraction of its maximum. So
+/// of two fractions, that which looks less wrong is believed.
+std::optional<BendOfFirstLight> credible_bend(
+    const core::Capture& capture,
+    const std::vector<double>& ambient,
+    const std::vector<std::optional<double>>& first_light) {
+    const auto bend = bend_of_first_light(capture, first_light);
+    if (!bend) return std::nullopt;
+    const auto fainter =
+        bend_of_first_light(capture, first_light_m(capture, ambient, kFainterFraction));
+    const auto wrong = [](const BendOfFirstLight& of) { return std::abs(std::log(of.k)); };
+    return fainter && fainter->k > 0.0 && wrong(*fainter) < wrong(*bend) ? fainter : bend;
 }
 
 /// First light that bends over the wall otherwise than that of points, edges and tips does.
@@ -274,7 +290,7 @@ std::vector<std::string> description_warnings(const core::Capture& capture) {
         return warnings;  // no scale makes negative lengths positive
     }
     const std::vector<std::optional<double>> first_light = first_light_m(capture, ambient);
-    const auto bend = bend_of_first_light(capture, first_light);
+    const auto bend = credible_bend(capture, ambient, first_light);
     if (auto warning = mistakes(capture, ambient, bend)) {
         warnings.push_back(*warning);
         return warnings;

@@ -90,15 +90,15 @@ std::optional<BendOfFirstLight> bend_in_window(const RangeMap& map,
 
 std::optional<double> first_light_m(const core::Capture& capture,
                                     std::size_t pair,
-                                    double ambient) {
+                                    double ambient,
+                                    double fraction) {
     const auto seen = capture.observed_values(pair);
     if (seen.empty()) return std::nullopt;
     const int first_seen = capture.observed_range(pair).begin;
     const auto excess = [&](std::size_t bin) { return static_cast<double>(seen[bin]) - ambient; };
     const Eigen::Map<const Eigen::ArrayXf> values(seen.data(),
                                                   static_cast<Eigen::Index>(seen.size()));
-    const double threshold =
-        kFirstLightFraction * (static_cast<double>(values.maxCoeff()) - ambient);
+    const double threshold = fraction * (static_cast<double>(values.maxCoeff()) - ambient);
     if (!(threshold > 0.0)) return std::nullopt;
     std::size_t bin = 0;
     while (excess(bin) < threshold) ++bin;
@@ -110,12 +110,13 @@ std::optional<double> first_light_m(const core::Capture& capture,
 }
 
 std::vector<std::optional<double>> first_light_m(const core::Capture& capture,
-                                                 const std::vector<double>& ambient) {
+                                                 const std::vector<double>& ambient,
+                                                 double fraction) {
     const core::WallScan& scan = capture.scan.wall();
     std::vector<std::optional<double>> first_light(
         std::min(scan.sensing.size(), scan.num_pairs()));  // a list may have fewer pairs
     core::parallel_for(first_light.size(), [&](std::size_t pair) {
-        first_light[pair] = first_light_m(capture, pair, ambient[pair]);
+        first_light[pair] = first_light_m(capture, pair, ambient[pair], fraction);
     });
     return first_light;
 }

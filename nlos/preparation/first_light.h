@@ -14,16 +14,21 @@ inline constexpr double kFirstLightFraction = 0.3;
 /// Path length, from and to the wall, at which a pair's first light arrives, between bins.
 ///
 /// ambient   background per bin, not counted
+/// fraction  of the histogram's maximum, in (0, 1), which first light passes
 /// returns   nothing for a dark histogram, and where light was there when observation began late:
 ///           the first of it may have come before
-std::optional<double> first_light_m(const core::Capture& capture, std::size_t pair, double ambient);
+std::optional<double> first_light_m(const core::Capture& capture,
+                                    std::size_t pair,
+                                    double ambient,
+                                    double fraction = kFirstLightFraction);
 
 /// The same of as many pairs as there are sensing points: for every point of a confocal and of a
 /// single-laser scan, as the first laser point lights it in an exhaustive one.
 ///
 /// ambient   background per bin of every pair
 std::vector<std::optional<double>> first_light_m(const core::Capture& capture,
-                                                 const std::vector<double>& ambient);
+                                                 const std::vector<double>& ambient,
+                                                 double fraction = kFirstLightFraction);
 
 /// By what factor the bins of a confocal capture look too wide for its wall, from how first light
 /// bends over the wall.

@@ -188,8 +188,8 @@ TEST(Reconstruct, TakesANoiseFloorOffWhateverTheUnit) {
     core::Capture noisy = example();
     for (float& value : clean.transient.values()) value = std::round(50.0F * value);
     for (float& value : noisy.transient.values()) value = std::round(50.0F * value) + 2.0F;
-    const std::vector<float> expected = reconstruct(clean, {}, {}).volume.values;
     const std::string all = "volume.z_range_m=[0,1.024]";  // else the volume ends with the signal
+    const std::vector<float> expected = reconstruct(clean, with({all}), {}).volume.values;
     EXPECT_EQ(reconstruct(noisy, with({"noise_floor=2", all}), {}).volume.values, expected);
     EXPECT_NE(reconstruct(noisy, with({"noise_floor=1", all}), {}).volume.values, expected);
     noisy.unit = core::TransientUnit::Counts;

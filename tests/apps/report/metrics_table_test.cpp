@@ -47,16 +47,17 @@ TEST(Report, HeadlinesAreOfTheResultWithTheHighestFScore) {
     few.name = "few";
     few.metrics = scores(0.0001, 0.1);
     few.metrics.depth_coverage = 0.02;
-    few.metrics.fscore = 0.04;
+    few.metrics.fscore_10mm = 0.04;
     few.metrics.fscore_threshold_m = 0.01;
     ScoredResult most = few;
     most.name = "most";
     most.metrics = scores(0.002, 0.9);
     most.metrics.depth_coverage = 0.95;
-    most.metrics.fscore = 0.9;
+    most.metrics.fscore_10mm = 0.9;
     const std::string tiles = metrics_tiles({few, most});
     EXPECT_TRUE(contains(tiles, "<b>90.0<i>%</i></b><small>most</small>")) << tiles;
-    EXPECT_TRUE(contains(tiles, "<b>2.00<i>mm</i></b><small>over 95.0 % of the true surface"));
+    EXPECT_TRUE(
+        contains(tiles, "<b>2.00<i>mm</i></b><small>over 95.0 % of the true surface; most"));
     EXPECT_FALSE(contains(tiles, "0.100"));
     EXPECT_EQ(metrics_tiles({}), "");
 }
@@ -79,7 +80,7 @@ TEST(Report, EveryMetricHasALabelOfItsOwn) {
     std::vector<std::string> keys;
     for_each_field(all.metrics, [&](const char* name, auto& field, const char*) {
         field.emplace(1);
-        keys.emplace_back(name);
+        if (!nlos::looks_at_truth(name)) keys.emplace_back(name);
     });
     const std::string table = metrics_table({all});
     EXPECT_EQ(count_of(table, "<td"), keys.size());

@@ -108,6 +108,28 @@ TEST(CaptureCheck, TellsTheFactorOfWrongBinsAndOfAWrongWall) {
     }
 }
 
+// A chair: over the wall, first light's fraction of a maximum is passed by legs, seat or back.
+TEST(CaptureCheck, SurfacesThatTakeTurnsSayNothingWrongOfBins) {
+    core::Capture capture = nlos_test::confocal_capture(
+        nlos_test::wall_grid({48, 48}, {1.5 / 48, 1.5 / 48}), {1.504, 0.016, 165});
+    const auto add_plate = [&](double x0, double x1, double y0, double y1, double z) {
+        for (double x = x0 + 0.005; x < x1; x += 0.01) {
+            for (double y = y0 + 0.005; y < y1; y += 0.01) {
+                nlos_test::add_scatterer(capture, Vec3(x, y, z), 4.0);
+            }
+        }
+    };
+    add_plate(-0.22, 0.22, -0.14, 0.30, 1.18);   // back
+    add_plate(-0.22, 0.22, -0.18, -0.14, 0.78);  // seat
+    for (const double x : {-0.22, 0.18}) {
+        add_plate(x, x + 0.04, -0.60, -0.18, 0.78);  // legs
+        add_plate(x, x + 0.04, -0.60, -0.18, 1.18);
+    }
+    const std::vector<double> dark(capture.scan.num_pairs(), 0.0);
+    EXPECT_GT(bend_of_first_light(capture, first_light_m(capture, dark))->k, 1.1);
+    EXPECT_EQ(capture_warnings(capture), std::vector<std::string>{});
+}
+
 TEST(CaptureCheck, APlaneSaysNothingWrongOfBins) {
     core::Capture capture = nlos_test::confocal_capture(
         nlos_test::wall_grid({24, 24}, {0.04, 0.04}), {0.0, 0.016, 200});

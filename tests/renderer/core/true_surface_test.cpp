@@ -55,7 +55,7 @@ TEST(TrueSurface, ASlopeIsOneSurfaceWithTheDepthOfItsMiddle) {
         EXPECT_NEAR(truth.main.depth_m[i], 1.0 + 2.0 * x - y, 1e-12);
     }
     EXPECT_EQ(truth.samples.positions.size(), 32U * 32U);
-    EXPECT_EQ(truth.lost_at_half, 0.0);
+    EXPECT_LT(truth.lost_at_half, 1e-3);
 }
 
 TEST(TrueSurface, WhatFallsBetweenColumnsIsSeen) {
@@ -68,7 +68,7 @@ TEST(TrueSurface, WhatFallsBetweenColumnsIsSeen) {
     for (const std::size_t ix : {0U, 1U}) {
         const auto& column = truth.columns[truth.main.index(ix, 0)];
         ASSERT_EQ(column.size(), 1U);
-        EXPECT_DOUBLE_EQ(column[0].depth_m, 0.6);
+        EXPECT_NEAR(column[0].depth_m, 0.6, 1e-12);
         EXPECT_NEAR(column[0].fraction, 0.15, 1e-12);
     }
     EXPECT_NEAR(truth.covered(truth.main.index(2, 0)), 0.5, 1e-12);
@@ -78,12 +78,12 @@ TEST(TrueSurface, NearestOfSeveralSurfacesIsTaken) {
     const auto depth = [](double x, double) { return x < 0.02 ? 0.6 : 0.9; };
     const TrueSurface truth({view_of(2, 20, depth)}, 20);
     ASSERT_EQ(truth.columns[0].size(), 2U);
-    EXPECT_DOUBLE_EQ(truth.main.depth_m[0], 0.6) << "which covers 70 %";
+    EXPECT_NEAR(truth.main.depth_m[0], 0.6, 1e-12) << "which covers 70 %";
     DepthMap found(truth.main.x_m, truth.main.y_m);
     found.depth_m[0] = 0.8;
     const DepthMap nearest = core::nearest_surfaces(truth, found);
-    EXPECT_DOUBLE_EQ(nearest.depth_m[0], 0.9);
-    EXPECT_DOUBLE_EQ(nearest.depth_m[1], 0.6) << "where nothing was found";
+    EXPECT_NEAR(nearest.depth_m[0], 0.9, 1e-12);
+    EXPECT_NEAR(nearest.depth_m[1], 0.6, 1e-12) << "where nothing was found";
 }
 
 TEST(TrueSurface, DensePointsOfAPlaneLieOnIt) {
