@@ -20,7 +20,7 @@ using core::Vec3;
 using renderer::Estimator;
 using renderer::Object;
 
-const core::TimeAxis kAxis{1.2, 0.1, 32};
+const core::TimeAxis kAxis{0.5, 0.1, 40};
 
 /// A scene, what scans it, and the wall that both belong to.
 struct World {
@@ -236,7 +236,7 @@ TEST_P(RenderLaw, BinsMayBeHalvedAndEmptyOnesAdded) {
     expect_same(light_of(fine), before);
     World longer = world();
     longer.axis = {
-        kAxis.opl_start_m - 10.0 * kAxis.bin_width_m, kAxis.bin_width_m, kAxis.num_bins + 10};
+        kAxis.opl_start_m - 4.0 * kAxis.bin_width_m, kAxis.bin_width_m, kAxis.num_bins + 14};
     expect_same(light_of(longer), before);
 }
 
