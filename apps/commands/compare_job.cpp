@@ -5,7 +5,6 @@
 #include "apps/commands/fit_pictures.h"
 #include "apps/file_kind.h"
 #include "apps/scene_truth.h"
-#include "calib/compare_fit.h"
 #include "calib/fit_file.h"
 #include "calib/track/compare_tracks.h"
 #include "nlos/formats/capture_file.h"
@@ -54,15 +53,15 @@ Comparison compare_fit_to_scene(const std::string& a, const std::string& b, doub
     const bool is_fit = kind_of_file(b) == FileKind::Fit;
     const renderer::SceneDescription scene =
         renderer::read_scene_description(is_fit ? with_suffix(b, ".scene.json") : b, {});
-    Comparison comparison;
-    comparison.metrics =
-        score_fit(calib::read_fit(a),
-                  renderer::load_geometry(with_suffix(a, ".glb")),
-                  renderer::load_geometry(scene),
-                  is_fit ? calib::read_fit(b).points : std::vector<calib::FittedPoint>(),
-                  threshold_m,
-                  &comparison.panels);
-    return comparison;
+    const calib::FitResult fit = calib::read_fit(a);
+    const calib::FitErrors errors =
+        calib::compare_fit(fit,
+                           renderer::load_geometry(with_suffix(a, ".glb")),
+                           renderer::load_geometry(scene),
+                           is_fit ? calib::read_fit(b).points : std::vector<calib::FittedPoint>());
+    return {score_fit(fit, errors, threshold_m),
+            {},
+            overlay_panels(errors, scene.relay_wall.world_from_wall())};
 }
 
 nlos::Metrics compare_tracks(const std::string& a, const std::string& b) {
@@ -132,17 +131,12 @@ core::PointCloud surface_samples(const renderer::SceneGeometry& geometry) {
 }
 
 nlos::Metrics score_fit(const calib::FitResult& fit,
-                        const renderer::SceneGeometry& fitted,
-                        const renderer::SceneGeometry& truth,
-                        const std::vector<calib::FittedPoint>& true_points,
-                        double threshold_m,
-                        std::vector<nlos::Panel>* overlay) {
-    const calib::FitErrors errors = calib::compare_fit(fit, fitted, truth, true_points);
+                        const calib::FitErrors& errors,
+                        double threshold_m) {
     nlos::Metrics metrics;
     if (!errors.fitted_points.positions.empty()) {
         metrics = nlos::compare_points(errors.fitted_points, errors.true_points, threshold_m);
     }
-    if (overlay != nullptr) *overlay = overlay_panels(errors);
     metrics.position_error_m = errors.position_m;
     metrics.rotation_error_deg = errors.rotation_deg;
     metrics.size_error = errors.size;

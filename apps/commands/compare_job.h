@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "calib/fit/fit_result.h"
+#include "calib/compare_fit.h"
 #include "nlos/compare/compare.h"
 #include "nlos/layouts/capture_settings.h"
 #include "nlos/pictures/panel.h"
@@ -28,15 +28,10 @@ core::PointCloud surface_samples(const renderer::SceneGeometry& geometry);
 
 /// Scores a fit's poses and, beside them, its surfaces.
 ///
-/// fitted        geometry of the fit, posed
-/// true_points   point scatterers of the truth, beside its surfaces
-/// overlay       gets the panels of a picture of both; null: none wanted
+/// errors   of the fit, by calib::compare_fit()
 nlos::Metrics score_fit(const calib::FitResult& fit,
-                        const renderer::SceneGeometry& fitted,
-                        const renderer::SceneGeometry& truth,
-                        const std::vector<calib::FittedPoint>& true_points,
-                        double threshold_m,
-                        std::vector<nlos::Panel>* overlay = nullptr);
+                        const calib::FitErrors& errors,
+                        double threshold_m);
 
 /// Scores file A against file B: a volume, mesh, point cloud or fit against a scene.json (its
 /// ray-traced truth; for a fit, its objects), or a volume, mesh, point cloud or capture against

@@ -8,6 +8,7 @@
 #include "nlos/formats/volume_file.h"
 #include "nlos/layouts/layout_guess.h"
 #include "nlos/preparation/capture_check.h"
+#include "nlos/preparation/wall_frame.h"
 #include "renderer/core/capture/recorded_detector.h"
 #include "renderer/core/file_suffix.h"
 #include "renderer/core/mesh_formats/mesh_formats.h"
@@ -77,14 +78,29 @@ void describe_json(std::string& out, const std::string& path, const char* format
     KeyPrinter(out).print_keys(core::read_json_file(path), "");
 }
 
+/// How many there are, and where in the world.
+void print_points(std::string& out, const core::PointCloud& points) {
+    Eigen::AlignedBox3d box;
+    for (const core::Vec3& position : points.positions) box.extend(position);
+    std::string place;
+    if (!box.isEmpty()) {
+        place = fmt::format(", in the world from {} to {} m",
+                            core::vector_text(box.min()),
+                            core::vector_text(box.max()));
+    }
+    add_line(out, "surface points: {}{}", points.positions.size(), place);
+}
+
 void describe_volume(std::string& out, const std::string& path) {
     const nlos::Reconstruction volume = nlos::read_volume(path);
     add_line(out, "format: reconstructed volume (HDF5)");
     add_line(out, "method: {}", volume.method);
-    print_range(out, "x", volume.volume.axes.x_m);
-    print_range(out, "y", volume.volume.axes.y_m);
-    print_range(out, "z", volume.volume.axes.z_m);
-    add_line(out, "surface points: {}", volume.points.positions.size());
+    const nlos::VolumeAxes& axes = volume.volume.axes;
+    print_range(out, "wall x", axes.x_m);
+    print_range(out, "wall y", axes.y_m);
+    print_range(out, "depth from the wall", axes.z_m);
+    add_line(out, "wall's frame: {}", nlos::describe_wall_frame(axes.world_from_wall));
+    print_points(out, volume.points);
     add_line(out,
              "time: {:.2f} s, peak memory: {:.2f} GB",
              volume.seconds,
@@ -139,6 +155,10 @@ void describe_captures(std::string& out,
     }
     add_line(out, "format: {}", format.value_or("unknown"));
     for (const std::string& line : nlos::describe_capture(capture)) add_line(out, "{}", line);
+    if (const auto* wall = capture.scan.as<core::WallScan>()) {
+        const core::Transform pose = nlos::derive_wall_frame(*wall).world_from_wall;
+        add_line(out, "wall's frame: {}", nlos::describe_wall_frame(pose));
+    }
     const auto response = core::recorded_response(capture);
     if (response) add_line(out, "detector: {}", core::describe(*response));
     if (const auto spot_m = core::recorded_spot_m(capture)) {

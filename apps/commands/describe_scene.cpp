@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/commands/describe_file.h"
+#include "nlos/preparation/wall_frame.h"
 #include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/core/settings/settings_json.h"
 #include "renderer/light_range.h"
@@ -127,6 +128,8 @@ void print_measurement(std::string& out,
                      wall.illumination.size(),
                      description.relay_wall.size_m[0],
                      description.relay_wall.size_m[1]);
+            const core::Transform pose = nlos::derive_wall_frame(wall).world_from_wall;
+            add_line(out, "wall's frame: {}", nlos::describe_wall_frame(pose));
         });
 }
 

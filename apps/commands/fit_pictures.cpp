@@ -47,22 +47,30 @@ std::array<std::size_t, 2> lit_bins(const calib::FitResult& result) {
     return nlos::shown_bins(light);
 }
 
-Eigen::AlignedBox3d box_around(const calib::FitErrors& errors) {
+/// What a picture lays over each other, in the wall's frame [m].
+struct Overlay {
+    std::vector<Vec3> truth;
+    std::vector<Vec3> fit;
+};
+
+std::vector<Vec3> moved(const core::Transform& transform, std::vector<Vec3> points) {
+    for (Vec3& point : points) point = transform * point;
+    return points;
+}
+
+Eigen::AlignedBox3d box_around(const Overlay& overlay) {
     Eigen::AlignedBox3d box;
-    for (const auto* points : {&errors.true_points, &errors.fitted_points}) {
-        for (const Vec3& p : points->positions) box.extend(p);
+    for (const auto* points : {&overlay.truth, &overlay.fit}) {
+        for (const Vec3& p : *points) box.extend(p);
     }
     const double margin = 0.05 * box.sizes().maxCoeff() + 0.01;
     return {box.min().array() - margin, box.max().array() + margin};
 }
 
 // Cells that hold truth get 1, those that hold the fit 2 more.
-nlos::ImagePanel overlay_view(const calib::FitErrors& errors,
-                              const Eigen::AlignedBox3d& box,
-                              const char* title,
-                              int across,
-                              int up) {
-    const std::array<const char*, 3> labels{"x [m]", "y [m]", "z [m]"};
+nlos::ImagePanel overlay_view(
+    const Overlay& overlay, const Eigen::AlignedBox3d& box, const char* title, int across, int up) {
+    const std::array<const char*, 3> labels{nlos::kWallX, nlos::kWallY, nlos::kWallDepth};
     const double cell = box.sizes().maxCoeff() / kCellsAcross;
     nlos::ImagePanel panel;
     panel.title = title;
@@ -78,15 +86,15 @@ nlos::ImagePanel overlay_view(const calib::FitErrors& errors,
     panel.y_label = labels[static_cast<std::size_t>(up)];
     panel.categories = {{"truth", kTruth}, {"fit", kFit}, {"both", kBoth}};
     std::vector<int> marks(panel.width * panel.height, 0);
-    const auto mark = [&](const core::PointCloud& points, int bit) {
-        for (const Vec3& p : points.positions) {
+    const auto mark = [&](const std::vector<Vec3>& points, int bit) {
+        for (const Vec3& p : points) {
             const auto x = static_cast<std::size_t>((p[across] - box.min()[across]) / cell);
             const auto y = static_cast<std::size_t>((p[up] - box.min()[up]) / cell);
             marks[y * panel.width + x] |= bit;
         }
     };
-    mark(errors.true_points, 1);
-    mark(errors.fitted_points, 2);
+    mark(overlay.truth, 1);
+    mark(overlay.fit, 2);
     panel.values.assign(marks.begin(), marks.end());
     return panel;
 }
@@ -136,12 +144,16 @@ std::vector<nlos::Panel> fit_panels(const calib::FitResult& result) {
     return {data, model, residual};
 }
 
-std::vector<nlos::Panel> overlay_panels(const calib::FitErrors& errors) {
-    if (errors.true_points.positions.empty() && errors.fitted_points.positions.empty()) return {};
-    const Eigen::AlignedBox3d box = box_around(errors);
-    nlos::ImagePanel front = overlay_view(errors, box, "Front (seen from the wall)", 0, 1);
-    nlos::ImagePanel side = overlay_view(errors, box, "Side (along x)", 2, 1);
-    nlos::ImagePanel top = overlay_view(errors, box, "Top (along y)", 0, 2);
+std::vector<nlos::Panel> overlay_panels(const calib::FitErrors& errors,
+                                        const core::Transform& world_from_wall) {
+    const core::Transform wall_from_world = world_from_wall.inverse(Eigen::Isometry);
+    const Overlay overlay{moved(wall_from_world, errors.true_points.positions),
+                          moved(wall_from_world, errors.fitted_points.positions)};
+    if (overlay.truth.empty() && overlay.fit.empty()) return {};
+    const Eigen::AlignedBox3d box = box_around(overlay);
+    nlos::ImagePanel front = overlay_view(overlay, box, "Front (seen from the wall)", 0, 1);
+    nlos::ImagePanel side = overlay_view(overlay, box, "Side (along wall x)", 2, 1);
+    nlos::ImagePanel top = overlay_view(overlay, box, "Top (along wall y)", 0, 2);
     front.x_direction = top.x_direction = nlos::AxisDirection::Reversed;
     return {front, side, top};
 }

@@ -41,7 +41,7 @@ class Plan {
     Plan(const View& view, const calib::TrackSensor& sensor)
         : view_(view), wall_from_world_(sensor.wall.world_from_wall().inverse()) {
         panel_.title = view.title;
-        panel_.x_label = "x [m]";
+        panel_.x_label = nlos::kWallX;
         panel_.y_label = view.up_label;
     }
 
@@ -198,8 +198,8 @@ std::vector<nlos::Panel> track_panels(const std::vector<calib::FrameEstimate>& f
                                       const calib::TrackSensor& sensor,
                                       const ExplainedFrame& shown) {
     std::vector<nlos::Panel> panels;
-    for (const View& view : {View{"Top view: wall below", 0, 2, "distance from the wall [m]"},
-                             View{"Front view, onto the wall", 0, 1, "y [m]"}}) {
+    for (const View& view : {View{"Top view: wall below", 0, 2, nlos::kWallDepth},
+                             View{"Front view, onto the wall", 0, 1, nlos::kWallY}}) {
         Plan plan(view, sensor);
         draw_wall(settings, sensor, plan);
         draw_known(frames, settings, plan);

@@ -101,12 +101,13 @@ template <class T, class Value>
 ItemArray column_array(const DepthMap& map,
                        const char* name,
                        StoredNumber number,
-                       const Value& value) {
+                       const Value& value,
+                       const std::optional<nlos::Coordinates>& coordinates = std::nullopt) {
     std::vector<T> values;
     for (std::size_t i = 0; i < map.depth_m.size(); ++i) {
         values.push_back(static_cast<T>(value(i)));
     }
-    return make_item_array<T>(name, {map.x_m.size(), map.y_m.size()}, number, values);
+    return make_item_array<T>(name, {map.x_m.size(), map.y_m.size()}, number, values, coordinates);
 }
 
 ItemArray normal_array(const DepthMap& map) {
@@ -114,8 +115,11 @@ ItemArray normal_array(const DepthMap& map) {
     for (const Vec3& normal : map.normals) {
         for (const double coordinate : normal) values.push_back(static_cast<float>(coordinate));
     }
-    return make_item_array<float>(
-        "normals", {map.x_m.size(), map.y_m.size(), 3}, StoredNumber::Float32, values);
+    return make_item_array<float>("normals",
+                                  {map.x_m.size(), map.y_m.size(), 3},
+                                  StoredNumber::Float32,
+                                  values,
+                                  nlos::kWorldDirections);
 }
 
 ItemArray pose_array(const Recipe& recipe, const ItemPlan& plan) {
@@ -129,16 +133,23 @@ ItemArray pose_array(const Recipe& recipe, const ItemPlan& plan) {
         Eigen::Map<RowMajor> pose(&values[16 * i]);
         pose = plan.objects[i].world_from_mesh.matrix();
     }
-    return make_item_array<double>("poses", {most, 4, 4}, StoredNumber::Float64, values);
+    return make_item_array<double>(
+        "poses", {most, 4, 4}, StoredNumber::Float64, values, nlos::kWorldPositions);
 }
 
 ItemArray truth_array(Truth truth,
                       const Recipe& recipe,
                       const ItemPlan& plan,
                       const DepthMap& map) {
-    const auto floats = [&](const char* name, const std::vector<double>& values) {
+    const auto floats = [&](const char* name,
+                            const std::vector<double>& values,
+                            const std::optional<nlos::Coordinates>& coordinates = std::nullopt) {
         return column_array<float>(
-            map, name, StoredNumber::Float32, [&](std::size_t i) { return values[i]; });
+            map,
+            name,
+            StoredNumber::Float32,
+            [&](std::size_t i) { return values[i]; },
+            coordinates);
     };
     switch (truth) {
         case Truth::Normals:
@@ -157,7 +168,7 @@ ItemArray truth_array(Truth truth,
         case Truth::Poses:
             return pose_array(recipe, plan);
         default:
-            return floats("depth", map.depth_m);
+            return floats("depth", map.depth_m, nlos::kWallPositions);
     }
 }
 

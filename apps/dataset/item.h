@@ -4,9 +4,11 @@
 #include "apps/dataset/item_plan.h"
 #include "nlos/containers/shape.h"
 #include "nlos/containers/stored_number.h"
+#include "nlos/formats/coordinates.h"
 #include "renderer/core/progress.h"
 #include "renderer/core/settings/json_file.h"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,18 +20,21 @@ struct ItemArray {
     std::string name;
     nlos::Shape shape;  ///< of one item; empty for a number
     nlos::StoredNumber number = nlos::StoredNumber::Float32;
-    std::string bytes;  ///< in the machine's order, slowest axis first
+    std::string bytes;                               ///< in the machine's order, slowest axis first
+    std::optional<nlos::Coordinates> coordinates{};  ///< of places and directions
 };
 
 template <class T>
 ItemArray make_item_array(std::string name,
                           nlos::Shape shape,
                           nlos::StoredNumber number,
-                          std::span<const T> values) {
+                          std::span<const T> values,
+                          const std::optional<nlos::Coordinates>& coordinates = std::nullopt) {
     return {std::move(name),
             std::move(shape),
             number,
-            {reinterpret_cast<const char*>(values.data()), values.size_bytes()}};
+            {reinterpret_cast<const char*>(values.data()), values.size_bytes()},
+            coordinates};
 }
 
 /// Where the time of items goes: processor seconds per step.
@@ -72,10 +77,11 @@ struct Item {
 /// is not signal.
 ///
 /// Arrays: H, shaped as in a capture file, in W/(m^2 sr) per bin or counts; with float16 also
-/// H_scale, by which H has to be multiplied; clean, what H is without the detector; depth [m, NaN
-/// where nothing is], normals [world], albedo, mask and object_ids (-1 where nothing is), all over
-/// the wall (X, Y) at scene.ground_truth.depth_resolution; poses (M, 4, 4), world from a mesh whose
-/// longest side is 1, of the most objects that an item can have, NaN for those it has not.
+/// H_scale, by which H has to be multiplied; clean, what H is without the detector; depth [m from
+/// the wall, NaN where nothing is], normals [world], albedo, mask and object_ids (-1 where nothing
+/// is), all over the wall (X, Y) at scene.ground_truth.depth_resolution; poses (M, 4, 4), world
+/// from a mesh whose longest side is 1, of the most objects that an item can have, NaN for those it
+/// has not.
 ///
 /// progress   asked whether to stop
 /// throws     core::Error, core::Failure as renderer::render() and nlos::detect() do

@@ -115,6 +115,7 @@ core::Json describe(const PlacedObject& object, const DrawnObject& drawn, const 
     const renderer::Material& material = object.material;
     return {{"mesh", object.mesh->name},
             {"triangles", object.mesh->mesh.triangles.size()},
+            {"frame", "wall"},
             {"position_m", core::write_value(position)},
             {"rotation_wxyz", {q.w(), q.x(), q.y(), q.z()}},
             {"scale_m", core::write_value(drawn.scale)},

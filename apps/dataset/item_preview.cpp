@@ -105,7 +105,7 @@ std::vector<nlos::Panel> preview_panels(const Recipe& recipe, const Item& item) 
         panel.colour_map = nlos::ColourMap::Viridis;
         panels.push_back(std::move(panel));
     };
-    add("depth", "true depth", "depth [m]");
+    add("depth", "true depth", nlos::kWallDepth);
     add("object_ids", "objects", "object");
     return panels;
 }

@@ -95,9 +95,9 @@ void for_each_field(ObjectDistributions& s, Visitor&& visit) {
     visit("stretch",
           s.stretch,
           core::between(0.001, 1000, "factor along each axis, before it is turned"));
-    visit("x_m", s.x_m, "centre of an object, along the wall [m]");
-    visit("y_m", s.y_m, "likewise, up [m]");
-    visit("z_m", s.z_m, "likewise, distance from the wall [m]");
+    visit("x_m", s.x_m, "centre of an object, along wall x [m]");
+    visit("y_m", s.y_m, "likewise, along wall y [m]");
+    visit("z_m", s.z_m, "likewise, depth from the wall [m]");
     visit("rotation", s.rotation, "how objects are turned");
     visit("albedo", s.albedo, core::between(0, 1, "of an object"));
     visit("glossy", s.glossy, core::between(0, 1, "chance of a metal instead of a diffuse object"));

@@ -50,11 +50,11 @@ class Hdf5Shard : public ShardWriter {
     }
 
     void finish() override {
-        for (ItemArray& column : columns_) {
-            if (is_chunked(column)) continue;
-            nlos::Shape shape = column.shape;
-            shape.insert(shape.begin(), parameters_.size());
-            file_.write_numbers(column.name, column.number, shape, column.bytes);
+        for (const ItemArray& column : columns_) {
+            if (!is_chunked(column)) write_whole(column);
+            if (column.coordinates) {
+                nlos::state_coordinates(file_, column.name, *column.coordinates);
+            }
         }
         std::vector<std::uint64_t> numbers(items_.size());
         std::iota(numbers.begin(), numbers.end(), items_.begin);
@@ -68,9 +68,15 @@ class Hdf5Shard : public ShardWriter {
     }
 
  private:
+    void write_whole(const ItemArray& column) {
+        nlos::Shape shape = column.shape;
+        shape.insert(shape.begin(), parameters_.size());
+        file_.write_numbers(column.name, column.number, shape, column.bytes);
+    }
+
     void create(const std::vector<ItemArray>& arrays) {
         for (const ItemArray& array : arrays) {
-            columns_.push_back({array.name, array.shape, array.number, {}});
+            columns_.push_back({array.name, array.shape, array.number, {}, array.coordinates});
             if (!is_chunked(array)) continue;
             file_.create_rows(array.name, array.number, items_.size(), array.shape, compression_);
         }

@@ -106,6 +106,16 @@ core::Json colours_json() {
     return json;
 }
 
+/// The first three rows of a transform.
+core::Json rows_of(const core::Transform& transform) {
+    core::Json rows = core::Json::array();
+    for (int i = 0; i < 3; ++i) {
+        const Eigen::RowVector4d row = transform.matrix().row(i);
+        rows.push_back(std::vector<double>(row.begin(), row.end()));
+    }
+    return rows;
+}
+
 core::Json views_json(const PageViews& views, int halvings, PageArrays& arrays) {
     const PageWall wall = page_wall(views);
     core::Json json{{"version", 1},
@@ -114,6 +124,9 @@ core::Json views_json(const PageViews& views, int halvings, PageArrays& arrays) 
                     {"results", core::Json::array()},
                     {"best", views.best + (views.truth ? 1 : 0)},
                     {"animations", core::Json::array()}};
+    if (!nlos::is_world_frame(wall.frame_from_world)) {
+        json["world_from_wall"] = rows_of(wall.frame_from_world.inverse(Eigen::Isometry));
+    }
     if (views.scan) {
         const auto add = [&](const core::WallPoints& points) {
             return add_points(arrays, points.positions, wall.frame_from_world);

@@ -3,14 +3,13 @@
 
 #include "nlos/pictures/image_layout.h"
 #include "nlos/pictures/map_ranges.h"
+#include "nlos/preparation/wall_frame.h"
 #include "renderer/core/settings/json_file.h"
 
 #include <fmt/core.h>
 
 namespace apps {
 namespace {
-
-constexpr double kSameFrame = 1e-6;  // [m and rad] between walls that are one
 
 using Range = std::array<double, 2>;
 
@@ -79,8 +78,7 @@ core::Json quantity_json(const ColumnQuantity& quantity,
 
 /// Whether the wall's frame is that of the page.
 bool is_of_page(const ResultView& result, const core::Transform& frame_from_world) {
-    const core::Transform moved = frame_from_world * result.depth.world_from_wall;
-    return moved.isApprox(core::Transform::Identity(), kSameFrame);
+    return nlos::is_world_frame(frame_from_world * result.depth.world_from_wall);
 }
 
 /// Name, detail and maps.

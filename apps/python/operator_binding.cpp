@@ -2,6 +2,7 @@
 // The statistical solver's linear operators, from voxels to histograms and back.
 #include "apps/python/bindings.h"
 #include "apps/python/operators.h"
+#include "apps/python/wall_frame_binding.h"
 
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -74,9 +75,21 @@ void bind_application(nb::class_<Operator>& binding) {
         .def_prop_ro(
             "volume_shape",
             [](const Operator& self) { return nb::tuple(nb::cast(self.domain().volume_shape())); })
-        .def_prop_ro("x_m", &axis_of<&nlos::VolumeAxes::x_m, Operator>, nb::rv_policy::reference)
-        .def_prop_ro("y_m", &axis_of<&nlos::VolumeAxes::y_m, Operator>, nb::rv_policy::reference)
-        .def_prop_ro("z_m", &axis_of<&nlos::VolumeAxes::z_m, Operator>, nb::rv_policy::reference);
+        .def_prop_ro("x_m",
+                     &axis_of<&nlos::VolumeAxes::x_m, Operator>,
+                     nb::rv_policy::reference,
+                     "(X,) voxel centres along wall x [m]")
+        .def_prop_ro("y_m",
+                     &axis_of<&nlos::VolumeAxes::y_m, Operator>,
+                     nb::rv_policy::reference,
+                     "(Y,) voxel centres along wall y [m]")
+        .def_prop_ro("z_m",
+                     &axis_of<&nlos::VolumeAxes::z_m, Operator>,
+                     nb::rv_policy::reference,
+                     "(Z,) depths of voxel centres from the wall [m]");
+    bind_wall_frame(
+        binding,
+        [](const Operator& self) -> const auto& { return self.domain().axes.world_from_wall; });
 }
 
 std::vector<double> centres_from(nb::handle value, const std::string& name) {
@@ -84,7 +97,7 @@ std::vector<double> centres_from(nb::handle value, const std::string& name) {
     if (array.ndim() != 1 || array.size() == 0) {
         throw core::Error(name,
                           "has shape " + shape_text(shape_of(array)),
-                          "must be a list of voxel centres [m]");
+                          "must be a list of voxel centres in the wall's frame [m]");
     }
     return {array.data(), array.data() + array.size()};
 }

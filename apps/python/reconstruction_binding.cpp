@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/python/bindings.h"
+#include "apps/python/wall_frame_binding.h"
 #include "nlos/formats/volume_file.h"
 #include "nlos/pictures/pictures.h"
 #include "nlos/reconstruction/surface_mesh.h"
@@ -43,12 +44,6 @@ std::optional<Array<double>> column_view(nb::handle self) {
     return array_view(values.data(), columns_of(result), self);
 }
 
-Array<double> world_from_wall(Reconstruction& result) {
-    const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix =
-        result.volume.axes.world_from_wall.matrix();
-    return array_of(std::vector<double>(matrix.data(), matrix.data() + 16), {4, 4});
-}
-
 nb::tuple mesh_of(const Reconstruction& result) {
     core::TriangleMesh mesh = nlos::surface_mesh(result.depth);
     return nb::make_tuple(array_of(std::move(mesh.vertices)), array_of(std::move(mesh.triangles)));
@@ -79,14 +74,13 @@ std::string reconstruction_text(const Reconstruction& result) {
 void bind_arrays(nb::class_<Reconstruction>& binding) {
     using nlos::VolumeAxes;
     binding.def_prop_ro("volume", &volume_view, "(X, Y, Z) float32, in the result's own memory")
-        .def_prop_ro("x_m", &axis_view<&VolumeAxes::x_m>, "(X,) voxel centres along the wall [m]")
-        .def_prop_ro("y_m", &axis_view<&VolumeAxes::y_m>, "(Y,) voxel centres along the wall [m]")
-        .def_prop_ro("z_m", &axis_view<&VolumeAxes::z_m>, "(Z,) along the wall's normal [m]")
+        .def_prop_ro("x_m", &axis_view<&VolumeAxes::x_m>, "(X,) voxel centres along wall x [m]")
+        .def_prop_ro("y_m", &axis_view<&VolumeAxes::y_m>, "(Y,) voxel centres along wall y [m]")
         .def_prop_ro(
-            "world_from_wall", &world_from_wall, nb::rv_policy::reference, "(4, 4) float64")
+            "z_m", &axis_view<&VolumeAxes::z_m>, "(Z,) depths of voxel centres from the wall [m]")
         .def_prop_ro("depth_m",
                      &column_view<[](auto& r) -> auto& { return r.depth.depth_m; }>,
-                     "(X, Y) float64 depth of the surface [m]; NaN: background")
+                     "(X, Y) float64 depth of the surface from the wall [m]; NaN: background")
         .def_prop_ro("depth_sigma_m",
                      &column_view<[](auto& r) -> auto& { return r.depth_sigma_m; }>,
                      "(X, Y) standard deviation of depth_m [m]; None where the noise is not known")
@@ -100,7 +94,7 @@ void bind_arrays(nb::class_<Reconstruction>& binding) {
                 if (result.depth.normals.empty()) return std::nullopt;
                 return array_view(result.depth.normals, columns_of(result), self);
             },
-            "(X, Y, 3) float64, world, unit; None: not known")
+            "(X, Y, 3) float64 normals of the surface, world, unit; None: not known")
         .def_prop_ro(
             "points_m",
             [](nb::handle self) {
@@ -118,6 +112,9 @@ void bind_reconstruction(nb::module_& module) {
                                        nb::is_weak_referenceable(),
                                        "What reconstruct() found, and what it took.");
     bind_arrays(binding);
+    bind_wall_frame(
+        binding,
+        [](const Reconstruction& r) -> const auto& { return r.volume.axes.world_from_wall; });
     binding.def_ro("method", &Reconstruction::method, "the one that ran")
         .def_ro("reason", &Reconstruction::reason, "why `auto` took it")
         .def_ro("findings", &Reconstruction::findings, "what `auto` found, a line each")

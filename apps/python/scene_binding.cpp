@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/python/bindings.h"
+#include "apps/python/wall_frame_binding.h"
 #include "apps/scene_truth.h"
 #include "renderer/core/settings/settings_json.h"
 #include "renderer/core/system/output_file.h"
@@ -108,6 +109,7 @@ nb::dict depth_map(const SceneObject& scene) {
     result["x_m"] = array_of(std::move(map.x_m), {shape[0]});
     result["y_m"] = array_of(std::move(map.y_m), {shape[1]});
     result["depth_m"] = array_of(std::move(map.depth_m), shape);
+    result["world_from_wall"] = matrix_of(map.world_from_wall);
     if (!map.albedo.empty()) result["albedo"] = array_of(std::move(map.albedo), shape);
     return result;
 }
@@ -215,8 +217,9 @@ void bind_scene(nb::module_& module) {
         .def("with_objects", &with_objects, nb::arg("objects"), "A copy with other objects.")
         .def("depth_map",
              &depth_map,
-             "What the relay wall sees: dict of x_m (X,), y_m (Y,), depth_m (X, Y) with NaN for "
-             "background, and albedo (X, Y) where known.")
+             "What the relay wall sees, in its frame: dict of x_m (X,) and y_m (Y,) along wall x "
+             "and wall y, depth_m (X, Y) from the wall with NaN for background [m], "
+             "world_from_wall (4, 4), and albedo (X, Y) where known.")
         .def("write",
              &write_scene,
              nb::arg("path").none(),

@@ -223,9 +223,7 @@ void bind_scores(nb::module_& module) {
     });
     module.def("compare", [](const FitObject& a, const SceneObject& b, const Threshold& threshold) {
         return scores(apps::score_fit(a.result,
-                                      a.result.geometry,
-                                      b.geometry,
-                                      {},
+                                      calib::compare_fit(a.result, a.result.geometry, b.geometry),
                                       threshold.value_or(apps::kDefaultThreshold_m)));
     });
     module.def(

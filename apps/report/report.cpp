@@ -155,8 +155,8 @@ std::string space_html(const ResultsFolder& results) {
 std::string side_by_side_html(const ResultsFolder& results) {
     if (results.views.results.empty()) return "";
     return figure_html(view_html("matrix"),
-                       "Seen from the wall: y upwards, x running right to left. A row has one "
-                       "scale; depth errors are found minus true.") +
+                       "Seen from the wall: wall y upwards, wall x running right to left. A row "
+                       "has one scale; depth errors are found minus true.") +
            figure_html(view_html("pair"), "Two of these over each other: move the divider.");
 }
 
@@ -282,8 +282,9 @@ std::string render_report(const ResultsFolder& results, double limit_bytes) {
     }
     html +=
         "</main>\n<footer>Made by " + escape_html(version_text()) +
-        ". Lengths in metres in the wall's frame; front views show what an eye at the wall sees: "
-        "y upwards, x running right to left.</footer>\n";
+        ". Lengths are in metres; wall x, wall y and depth are of the wall's frame, x, y and z "
+        "alone of the world's. Front views show what an eye at the wall sees: wall y upwards, wall "
+        "x running right to left.</footer>\n";
     return html + views_html(results.views, limit_bytes) + "</body>\n</html>\n";
 }
 

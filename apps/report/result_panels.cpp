@@ -122,6 +122,7 @@ std::vector<Fact> volume_facts(const nlos::Reconstruction& result) {
         facts.emplace_back("Peak memory",
                            short_number(static_cast<double>(result.peak_bytes) / 1e6) + " MB");
     }
+    facts.emplace_back("Wall's frame", nlos::describe_wall_frame(axes.world_from_wall));
     return facts;
 }
 
@@ -253,7 +254,7 @@ ResultPanel track_panel(const std::string& path, const core::Json& json) {
     if (named > 0) {
         for (const int axis : {0, 1, 2}) {
             panel.facts.emplace_back(
-                std::string(1, "xyz"[axis]),
+                fmt::format("world {}", "xyz"[axis]),
                 fmt::format("{:.2f} to {:.2f} m", box.min()[axis], box.max()[axis]));
         }
     }

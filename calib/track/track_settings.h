@@ -183,13 +183,13 @@ void for_each_field(SearchSettings& s, Visitor&& visit) {
     visit("x_range_m",
           s.x_range_m,
           core::Ranged{
-              "where targets may appear, in the wall's frame; null: up to 1 m beyond what the "
-              "sensor sees [m]",
+              "where targets may appear along wall x; null: up to 1 m beyond what the sensor sees "
+              "[m]",
               {}});
     visit("y_range_m",
           s.y_range_m,
-          core::Ranged{"the same along y [m]; null: up to 0.75 m beyond", {}});
-    visit("z_range_m", s.z_range_m, core::above(0, "distances from the wall [m]"));
+          core::Ranged{"the same along wall y [m]; null: up to 0.75 m beyond", {}});
+    visit("z_range_m", s.z_range_m, core::above(0, "the same in depth from the wall [m]"));
     visit("cell_m", s.cell_m, core::above(0, "pitch of the grid on which targets are found [m]"));
 }
 

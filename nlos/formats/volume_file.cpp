@@ -4,6 +4,7 @@
 #include "nlos/containers/array_reader.h"
 #include "nlos/containers/writers/hdf5_writer.h"
 #include "nlos/formats/capture_format.h"
+#include "nlos/formats/coordinates.h"
 #include "renderer/core/error.h"
 #include "renderer/core/settings/settings_json.h"
 
@@ -30,14 +31,39 @@ void write_axis(Hdf5Writer& file,
                 const RowMajor4& pose) {
     file.write(name, {centres_m.size()}, centres_m);
     file.write_attribute(name, kPose, {4, 4}, {pose.data(), 16});
+    state_coordinates(file, name, kWallPositions);
 }
 
 template <class Vectors>
-void write_vectors(Hdf5Writer& file, const std::string& name, Shape shape, const Vectors& vectors) {
+void write_vectors(Hdf5Writer& file,
+                   const std::string& name,
+                   Shape shape,
+                   const Vectors& vectors,
+                   const Coordinates& coordinates) {
     std::vector<double> values;
     for (const auto& vector : vectors) values.insert(values.end(), vector.begin(), vector.end());
     shape.push_back(3);
     file.write(name, shape, values);
+    state_coordinates(file, name, coordinates);
+}
+
+void write_depth(Hdf5Writer& file, const Shape& columns, const Reconstruction& reconstruction) {
+    file.write("depth_m", columns, reconstruction.depth.depth_m);
+    state_coordinates(file, "depth_m", kWallPositions);
+    if (!reconstruction.depth_sigma_m.empty()) {
+        file.write("depth_sigma_m", columns, reconstruction.depth_sigma_m);
+        state_coordinates(file, "depth_sigma_m", kWallPositions);
+    }
+    if (!reconstruction.surface_probability.empty()) {
+        file.write("surface_probability", columns, reconstruction.surface_probability);
+    }
+}
+
+void write_points(Hdf5Writer& file, const core::PointCloud& points) {
+    const Shape shape{points.positions.size()};
+    write_vectors(file, "points", shape, points.positions, kWorldPositions);
+    if (points.normals.empty()) return;
+    write_vectors(file, "point_normals", shape, points.normals, kWorldDirections);
 }
 
 std::vector<Vec3> read_vectors(const ArrayReader& file, const std::string& name, Shape shape) {
@@ -176,20 +202,12 @@ void write_volume(const std::string& path, const Reconstruction& reconstruction)
     write_axis(file, "x_m", axes.x_m, pose);
     write_axis(file, "y_m", axes.y_m, pose);
     write_axis(file, "z_m", axes.z_m, pose);
-    file.write("depth_m", columns, reconstruction.depth.depth_m);
-    if (!reconstruction.depth_sigma_m.empty()) {
-        file.write("depth_sigma_m", columns, reconstruction.depth_sigma_m);
-    }
-    if (!reconstruction.surface_probability.empty()) {
-        file.write("surface_probability", columns, reconstruction.surface_probability);
-    }
+    write_depth(file, columns, reconstruction);
     file.write("max_projection", columns, max_projection(volume));
-    if (!volume.normals.empty()) write_vectors(file, "normals", columns, volume.normals);
-    const core::PointCloud& points = reconstruction.points;
-    write_vectors(file, "points", {points.positions.size()}, points.positions);
-    if (!points.normals.empty()) {
-        write_vectors(file, "point_normals", {points.normals.size()}, points.normals);
+    if (!volume.normals.empty()) {
+        write_vectors(file, "normals", columns, volume.normals, kWallDirections);
     }
+    write_points(file, reconstruction.points);
     file.write_attribute("/", "method", reconstruction.method);
     file.write_attribute("/", "reason", reconstruction.reason);
     file.write_guarded_attribute(

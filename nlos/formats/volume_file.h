@@ -8,7 +8,7 @@
 namespace nlos {
 
 /// Writes VOLUME.h5: volume, axes, depth_m, depth_sigma_m and surface_probability where reported,
-/// max_projection, normals, points, attributes.
+/// max_projection, normals, points, attributes. Places and directions state their frame and unit.
 /// throws    core::Error for a bad target, core::Failure when writing fails
 void write_volume(const std::string& path, const Reconstruction& reconstruction);
 

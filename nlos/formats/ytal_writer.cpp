@@ -2,6 +2,7 @@
 #include "nlos/containers/writers/hdf5_writer.h"
 #include "nlos/formats/capture_arrays.h"
 #include "nlos/formats/capture_format.h"
+#include "nlos/formats/coordinates.h"
 #include "nlos/formats/ytal_layout.h"
 #include "renderer/core/precision.h"
 #include "renderer/core/settings/json_file.h"
@@ -38,6 +39,7 @@ void write_positions(Hdf5Writer& file,
     } else {
         file.write(name, shape, to_floats(positions));
     }
+    state_coordinates(file, name, kWorldPositions);
 }
 
 void write_points(Hdf5Writer& file,
@@ -47,7 +49,9 @@ void write_points(Hdf5Writer& file,
     Shape shape = point_extents(points, layout);
     shape.push_back(3);
     write_positions(file, device + "_grid_xyz", shape, points.positions);
-    file.write(device + "_grid_normals", shape, to_floats(points.normals));
+    const std::string normals = device + "_grid_normals";
+    file.write(normals, shape, to_floats(points.normals));
+    state_coordinates(file, normals, kWorldDirections);
     file.write_enum(device + "_grid_format",
                     grid_format_members(),
                     static_cast<int>(layout.grids ? GridFormat::XY3 : GridFormat::N3));

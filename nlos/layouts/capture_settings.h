@@ -58,8 +58,8 @@ void for_each_field(CaptureReadSettings& s, Visitor&& visit) {
     visit("wall_size_m",
           s.wall_size_m,
           core::above(0,
-                      "replaces the extents of the scanned points along x and y, first to last "
-                      "[m]"));
+                      "replaces the extents of the scanned points along the grid's x and y axes, "
+                      "first to last [m]"));
     visit("opl_origin",
           s.opl_origin,
           "whether path lengths start and end at the wall, or include the segments to laser and "

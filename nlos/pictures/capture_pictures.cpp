@@ -37,7 +37,7 @@ ImagePanel streak_panel(const core::Capture& capture,
             return capture.transient.histogram(pair_of(scan, points[i]))[bins[0] + bin];
         });
     panel.title = grid ? "Streak of the middle row" : "Streak of all points";
-    panel.x_label = grid ? "wall x [m]" : "number of the point";
+    panel.x_label = grid ? kWallX : "number of the point";
     panel.x_range = grid ? cell_edges(grid->first_m[0], grid->pitch_m[0], points.size())
                          : cell_edges(0.0, 1.0, points.size());
     panel.y_range = {capture.time_axis.bin_begin_m(static_cast<double>(bins[0])),

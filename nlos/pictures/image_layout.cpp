@@ -21,8 +21,8 @@ ImagePanel camera_panel(const core::PinholeCamera& camera, const std::vector<flo
     });
     panel.x_range = {0.0, static_cast<double>(panel.width)};
     panel.y_range = {0.0, static_cast<double>(panel.height)};
-    panel.x_label = "x [pixel]";
-    panel.y_label = "y [pixel]";
+    panel.x_label = "column [pixel]";
+    panel.y_label = "row [pixel]";
     panel.y_direction = AxisDirection::Reversed;
     return panel;
 }
@@ -33,8 +33,8 @@ ImagePanel wall_panel(const WallGrid& grid, const std::vector<float>& of_points)
     });
     panel.x_range = cell_edges(grid.first_m[0], grid.pitch_m[0], panel.width);
     panel.y_range = cell_edges(grid.first_m[1], grid.pitch_m[1], panel.height);
-    panel.x_label = "wall x [m]";
-    panel.y_label = "wall y [m]";
+    panel.x_label = kWallX;
+    panel.y_label = kWallY;
     panel.x_direction = AxisDirection::Reversed;
     return panel;
 }

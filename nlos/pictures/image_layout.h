@@ -22,7 +22,7 @@ std::array<double, 2> cell_edges(const std::vector<double>& centres);
 /// of_pixels   numbered as core::PinholeCamera says
 ImagePanel camera_panel(const core::PinholeCamera& camera, const std::vector<float>& of_pixels);
 
-/// One value per wall point as an eye in front of the wall sees them, axes in metres.
+/// One value per wall point as an eye in front of the wall sees them, axes in the wall's frame [m].
 ///
 /// of_points   in the capture's order
 ImagePanel wall_panel(const WallGrid& grid, const std::vector<float>& of_points);

@@ -14,6 +14,11 @@
 
 namespace nlos {
 
+/// Labels of axes in the wall's frame; x, y and z alone are the world's (nlos/formats/README.md).
+inline constexpr const char* kWallX = "wall x [m]";
+inline constexpr const char* kWallY = "wall y [m]";
+inline constexpr const char* kWallDepth = "depth from the wall [m]";
+
 /// How an axis runs in the picture. Usual: x to the right, y upwards.
 enum class AxisDirection { Usual, Reversed };
 
@@ -32,7 +37,7 @@ struct ImagePanel {
     std::vector<float> values;  ///< stored [y][x], x fastest; NaN is drawn as background
     std::array<double, 2> x_range{0.0, 1.0};  ///< outer edges of the first and last value
     std::array<double, 2> y_range{0.0, 1.0};
-    std::string x_label;  ///< with unit: "x [m]"
+    std::string x_label;  ///< with unit: "path length [m]"
     std::string y_label;
     std::string value_label;  ///< beside the colour bar, with unit
     ColourMap colour_map = ColourMap::Inferno;

@@ -25,8 +25,8 @@ ImagePanel front_view_of(const std::vector<double>& x_m,
     });
     panel.x_range = cell_edges(x_m);
     panel.y_range = cell_edges(y_m);
-    panel.x_label = "x [m]";
-    panel.y_label = "y [m]";
+    panel.x_label = kWallX;
+    panel.y_label = kWallY;
     panel.x_direction = AxisDirection::Reversed;
     return panel;
 }
@@ -66,13 +66,14 @@ ImagePanel empty_projection(const char* title,
 }
 
 /// The brightest fraction of the volume's maximum along the axis that a view looks along: from the
-/// front, along x (z to the right) and along y (x as in the front view, z upwards).
+/// front, along wall x (depth to the right) and along wall y (wall x as in the front view, depth
+/// upwards).
 std::vector<ImagePanel> project(const Volume& volume) {
     const auto& [x_m, y_m, z_m, pose] = volume.axes;
     std::vector<ImagePanel> views{
-        empty_projection("Front (seen from the wall)", x_m, "x [m]", y_m, "y [m]"),
-        empty_projection("Side (along x)", z_m, "z [m]", y_m, "y [m]"),
-        empty_projection("Top (along y)", x_m, "x [m]", z_m, "z [m]")};
+        empty_projection("Front (seen from the wall)", x_m, kWallX, y_m, kWallY),
+        empty_projection("Side (along wall x)", z_m, kWallDepth, y_m, kWallY),
+        empty_projection("Top (along wall y)", x_m, kWallX, z_m, kWallDepth)};
     float maximum = 0.0F;
     for (const float value : volume.values) maximum = std::max(maximum, value);
     const float scale = maximum > 0.0F ? 1.0F / maximum : 0.0F;
@@ -103,7 +104,7 @@ std::vector<ImagePanel> project(const Volume& volume) {
 ImagePanel depth_panel(const core::DepthMap& map,
                        const std::string& title,
                        const std::optional<Range>& range) {
-    return map_panel(map, title, "depth z [m]", ColourMap::Viridis, range, [&](std::size_t i) {
+    return map_panel(map, title, kWallDepth, ColourMap::Viridis, range, [&](std::size_t i) {
         return map.depth_m[i];
     });
 }

@@ -10,8 +10,8 @@
 
 namespace nlos {
 
-// Pictures of results, to be drawn by nlos/pictures/picture.h. Views along the wall's normal show
-// what an eye at the wall sees: y upwards and x running right to left.
+// Pictures of results, to be drawn by nlos/pictures/picture.h. All axes are the wall's. Views along
+// its normal show what an eye at the wall sees: wall y upwards and wall x running right to left.
 
 /// Front, side and top maximum projections, the depth map and, where reported, the probability of a
 /// surface and the standard deviation of depth; two columns align their axes.

@@ -2,6 +2,7 @@
 #include "nlos/preparation/wall_frame.h"
 
 #include "renderer/core/principal_axes.h"
+#include "renderer/core/settings/settings.h"
 
 #include <fmt/format.h>
 
@@ -15,6 +16,7 @@ using core::Mat3;
 using core::Vec3;
 
 constexpr double kGridTolerance = 0.02;  // of the pitch
+constexpr double kSameFrame = 1e-6;      // [m and rad] between frames that are one to people
 
 Vec3 mean_of(const std::vector<Vec3>& points) {
     Vec3 sum = Vec3::Zero();
@@ -152,6 +154,24 @@ WallFrame derive_wall_frame(const core::WallScan& scan) {
     }
     find_footprint(scan, wall);
     return wall;
+}
+
+bool is_world_frame(const core::Transform& world_from_frame) {
+    return world_from_frame.isApprox(core::Transform::Identity(), kSameFrame);
+}
+
+std::string describe_wall_frame(const core::Transform& world_from_wall) {
+    if (is_world_frame(world_from_wall)) return "the world's";
+    const auto text = [](const Vec3& vector) {
+        const Vec3 rounded = kSameFrame * (vector / kSameFrame).array().round().matrix();
+        return core::vector_text(rounded + Vec3::Zero());  // no -0
+    };
+    const Mat3 axes = world_from_wall.linear();
+    return fmt::format("from {} m of the world, wall x along {}, wall y along {}, depth along {}",
+                       text(world_from_wall.translation()),
+                       text(axes.col(0)),
+                       text(axes.col(1)),
+                       text(axes.col(2)));
 }
 
 }  // namespace nlos

@@ -49,4 +49,10 @@ struct WallFrame {
 /// throws    nothing
 WallFrame derive_wall_frame(const core::WallScan& scan);
 
+/// Whether a frame is the world's, as far as people can tell: to 1e-6 m and rad.
+bool is_world_frame(const core::Transform& world_from_frame);
+
+/// Where the wall's frame lies in the world: "the world's", or its origin and axes in words.
+std::string describe_wall_frame(const core::Transform& world_from_wall);
+
 }  // namespace nlos

@@ -100,18 +100,20 @@ struct ReconstructSettings {
 
 template <class Visitor>
 void for_each_field(VolumeSettings& s, Visitor&& visit) {
-    visit("voxels",
-          s.voxels,
-          core::between(1,
-                        kMaxVoxelsPerAxis,
-                        "number of voxels along x, y, z; null: columns at the scan's points"));
-    visit("z_range_m", s.z_range_m, "depth range [m]; null: what the time axis covers");
+    visit(
+        "voxels",
+        s.voxels,
+        core::between(
+            1,
+            kMaxVoxelsPerAxis,
+            "number of voxels along wall x, wall y and depth; null: columns at the scan's points"));
+    visit("z_range_m", s.z_range_m, "depths from the wall [m]; null: what the time axis covers");
 }
 
 template <class Visitor>
 void for_each_field(CropSettings& s, Visitor&& visit) {
-    visit("x_range_m", s.x_range_m, "wall points to use along the wall's x axis [m]; null: all");
-    visit("y_range_m", s.y_range_m, "wall points to use along the wall's y axis [m]; null: all");
+    visit("x_range_m", s.x_range_m, "wall points to use along wall x [m]; null: all");
+    visit("y_range_m", s.y_range_m, "wall points to use along wall y [m]; null: all");
     visit("opl_range_m", s.opl_range_m, "path lengths to use [m]; null: all");
 }
 

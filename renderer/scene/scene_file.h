@@ -127,7 +127,7 @@ void for_each_field(ScanSettings& scan, Visitor&& visit) {
           "how illumination and sensing points pair up (single|confocal|exhaustive), or sensor");
     visit("sensing_points",
           scan.sensing_points,
-          core::at_least(1, "grid of sensing points at cell centres, x by y"));
+          core::at_least(1, "grid of sensing points at cell centres, along wall x by wall y"));
     visit("illumination_m", scan.illumination_m, "single: the laser spot, world [m]");
     visit("illumination_points",
           scan.illumination_points,
@@ -196,7 +196,7 @@ template <class Visitor>
 void for_each_field(GroundTruthSettings& truth, Visitor&& visit) {
     visit("depth_resolution",
           truth.depth_resolution,
-          core::at_least(1, "columns of the true depth map, x by y"));
+          core::at_least(1, "columns of the true depth map, along wall x by wall y"));
 }
 
 template <class Visitor>

@@ -25,8 +25,8 @@ function wallLayout(animation) {
   const centre = (cell) => [centreOf(animation.x_m, w, Math.floor(cell / h)), centreOf(animation.y_m, h, cell % h)];
   return {
     cells: w * h,
-    x: viewer.linearAxis(animation.x_m, 'x (m)', true),
-    y: viewer.linearAxis(animation.y_m, 'y (m)'),
+    x: viewer.linearAxis(animation.x_m, viewer.wallTitles[0], true),
+    y: viewer.linearAxis(animation.y_m, viewer.wallTitles[1]),
     paint: (context, plot, colours) => {
       const bitmap = viewer.makeBitmap(w, h, (column, row) => colours[(w - 1 - column) * h + (h - 1 - row)]);
       viewer.paintBitmap(context, plot, bitmap, animation.x_m, animation.y_m);
@@ -87,8 +87,8 @@ function listLayout(animation, positions) {
   const radius = 0.48 * typicalDistance(count, at, nearest);
   return {
     cells: count,
-    x: viewer.linearAxis(rangeX, 'x (m)', true),
-    y: viewer.linearAxis(rangeY, 'y (m)'),
+    x: viewer.linearAxis(rangeX, viewer.wallTitles[0], true),
+    y: viewer.linearAxis(rangeY, viewer.wallTitles[1]),
     paint: (context, plot, colours) => paintDiscs(context, plot, at, radius, colours),
     cellAt: (x, y) => nearest(x, y, () => true),
     centre: at,

@@ -205,3 +205,20 @@ viewer.titleWithUnit = function (title, unit) {
 viewer.capitalised = function (text) {
   return text ? text[0].toUpperCase() + text.slice(1) : '';
 };
+
+// ---- Places. All that the page shows lies in the frame of its wall; x, y and z alone are the world's. ----
+
+viewer.wallAxes = ['wall x', 'wall y', 'depth'];
+viewer.wallTitles = ['wall x (m)', 'wall y (m)', 'depth from the wall (m)'];
+
+/** A place on the wall, or before it, in words. */
+viewer.positionText = (...position) =>
+  position.map((value, axis) => `${viewer.wallAxes[axis]} ${viewer.formatFixed(value)} m`).join(', ');
+
+/** A place before the wall in words, and in the world where that is another frame. */
+viewer.placeText = function (position) {
+  const text = viewer.positionText(...position);
+  if (!viewer.worldFromWall) return text;
+  const world = viewer.worldFromWall.map(([a, b, c, d]) => a * position[0] + b * position[1] + c * position[2] + d);
+  return `${text} (in the world ${world.map((value) => viewer.formatFixed(value)).join(', ')} m)`;
+};

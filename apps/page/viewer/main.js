@@ -93,6 +93,7 @@ function main() {
   try {
     metadata = viewer.readMetadata();
     viewer.colours = metadata.colours;
+    viewer.worldFromWall = metadata.world_from_wall;
   } catch (error) {
     problem = error;
   }

@@ -16,8 +16,6 @@ viewer.scaleOfMap = (map) => viewer.makeScale('linear', ...viewer.colourRange(ma
 viewer.mapValueText = (map, value) =>
   viewer.withUnit(viewer.formatNumber(value, kWords[map.unit] || 3), map.unit);
 
-viewer.positionText = (x, y) => `x ${viewer.formatFixed(x)} m, y ${viewer.formatFixed(y)} m`;
-
 function makeCell(grid, row, column, map) {
   const { result } = column;
   const cell = { map, column, loaded: null, bitmap: null, plot: null };

@@ -149,8 +149,8 @@ class Pair {
     const names = [left, right].map((index) => this.results[index].name);
     this.bar.set(viewer.scaleOfMap(maps[0]), maps[0].colours, viewer.titleWithUnit(name, maps[0].unit));
     this.labels.forEach((label, i) => { label.textContent = names[i]; });
-    this.plot.x = viewer.linearAxis(viewer.unionOfRanges(maps.map((map) => map.x_m)), 'x (m)', true);
-    this.plot.y = viewer.linearAxis(viewer.unionOfRanges(maps.map((map) => map.y_m)), 'y (m)');
+    this.plot.x = viewer.linearAxis(viewer.unionOfRanges(maps.map((map) => map.x_m)), viewer.wallTitles[0], true);
+    this.plot.y = viewer.linearAxis(viewer.unionOfRanges(maps.map((map) => map.y_m)), viewer.wallTitles[1]);
     this.plot.setLabel(`${name}: ${names[0]} left of the divider, ${names[1]} right of it`);
     this.readout.textContent = 'Drag the divider to compare. Point at the picture to read both values.';
     Object.assign(this.view.root.dataset, { left, right, position, map: name });

@@ -2,7 +2,6 @@
 // Slices through a volume: front, side and top views with linked cross-hairs.
 
 const kAxes = ['x', 'y', 'z'];
-const kAxisTitles = ['x (m)', 'y (m)', 'depth z (m)'];
 const kGap = 16;         // pixels between the views
 const kTallest = 760;    // pixels, of two views above each other
 const kStackBelow = 520; // pixels: narrower pages show the views one below the other
@@ -58,7 +57,7 @@ class Slices {
       return plot;
     });
     this.sliders = kAxes.map((axis, i) =>
-      viewer.slider(kAxisTitles[i].replace(' (m)', ''), 'slider-' + axis, { min: 0, max: 0 }, 0,
+      viewer.slider(viewer.capitalised(viewer.wallAxes[i]), 'slider-' + axis, { min: 0, max: 0 }, 0,
         (voxel) => this.positionWords(i, voxel),
         (voxel) => this.moveTo(this.state.voxel.map((old, k) => (k === i ? voxel : old)))),
     );
@@ -91,8 +90,8 @@ class Slices {
     const { size, edges, reduced } = this.volume;
     this.sliders.forEach((slider, i) => { slider.input.max = String(size[i] - 1); });
     kViews.forEach((shown, i) => {
-      this.plots[i].x = viewer.linearAxis(edges[shown.across], kAxisTitles[shown.across], shown.reversed);
-      this.plots[i].y = viewer.linearAxis(edges[shown.up], kAxisTitles[shown.up]);
+      this.plots[i].x = viewer.linearAxis(edges[shown.across], viewer.wallTitles[shown.across], shown.reversed);
+      this.plots[i].y = viewer.linearAxis(edges[shown.up], viewer.wallTitles[shown.up]);
     });
     this.note.textContent = `${size.join(' \u00d7 ')} voxels.` + (reduced ? ` Reduced: ${reduced}.` : '');
     this.view.root.dataset.result = String(this.state.result);
@@ -146,7 +145,7 @@ class Slices {
     this.describe(this.state.voxel);
     this.plots.forEach((plot, i) => {
       const { cut, name } = kViews[i];
-      plot.setLabel(`${name} at ${kAxes[cut]} ${this.positionWords(cut, this.state.voxel[cut])}`);
+      plot.setLabel(`${name} at ${viewer.wallAxes[cut]} ${this.positionWords(cut, this.state.voxel[cut])}`);
       plot.draw();
     });
   }
@@ -172,10 +171,10 @@ class Slices {
   }
 
   describe(voxel) {
-    const [x, y, z] = voxel.map((index, axis) => this.positionWords(axis, index));
+    const place = viewer.placeText(voxel.map((index, axis) => this.centre(axis, index)));
     const { size, quantity } = this.volume;
     const value = quantity.at((voxel[0] * size[1] + voxel[1]) * size[2] + voxel[2]);
-    this.readout.textContent = `Voxel at x ${x}, y ${y}, depth ${z}: value ${viewer.formatNumber(value)}.`;
+    this.readout.textContent = `Voxel at ${place}: value ${viewer.formatNumber(value)}.`;
   }
 
   point(shown, what, a, b) {

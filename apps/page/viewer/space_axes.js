@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Axes of the 3-D view: grids on the far sides of a box, with ticks in metres on its outline.
+// Axes of the 3-D view, which are the wall's: grids on the far sides of a box, with ticks in metres on its outline.
 
-const kTitles = ['x (m)', 'y (m)', 'depth z (m)'];
 const kFontSize = 12.5;   // CSS pixels
 const kTicks = 5;         // about so many on the longest side
 const kSharpness = 2;     // picture elements of labels per CSS pixel
@@ -62,7 +61,7 @@ class Axes {
         const label = makeLabel(viewer.formatNumber(value, 3), theme.soft, false);
         return Object.assign(label, { value });
       });
-      const title = makeLabel(kTitles[axis], theme.ink, true);
+      const title = makeLabel(viewer.wallTitles[axis], theme.ink, true);
       this.group.add(...numbers, title);
       return { numbers, title };
     });

@@ -21,12 +21,11 @@ function nearestPoint(stage, cloud, pointer) {
 }
 
 function describePoint(result, cloud, index) {
-  const [x, y, z] = cloud.object.geometry.getAttribute('position').array.slice(3 * index, 3 * index + 3);
+  const position = [...cloud.object.geometry.getAttribute('position').array.slice(3 * index, 3 * index + 3)];
   const fields = result.points.fields || [];
   const values = fields.map(({ name, unit }) =>
     `${name} ${viewer.withUnit(viewer.formatNumber(cloud.fields.get(name).at(index)), unit)}`);
-  const position = `${viewer.positionText(x, y)}, depth ${viewer.formatFixed(z)} m`;
-  return `${result.name} at ${position}. ${values.join('; ')}${values.length > 0 ? '.' : ''}`;
+  return `${result.name} at ${viewer.placeText(position)}. ${values.join('; ')}${values.length > 0 ? '.' : ''}`;
 }
 
 /** The shown point under the pointer in words, or an empty text; `clouds` by the result's index. */

@@ -5,6 +5,11 @@ The functions are the commands of the program `nlos` from objects to objects, wi
 between; they give the same bits. Lengths are in metres, path lengths too (never in seconds), and
 arrays have time as first axis: ``capture.H`` is (T, Sx, Sy).
 
+Points, poses and normals are in the world. What is seen from the wall is in the wall's frame:
+``x_m`` and ``y_m`` of a result run along wall x and wall y, ``z_m`` and ``depth_m`` away from the
+wall. ``result.to_world(x_m, y_m, depth_m)`` leads from there to the world, as the matrix
+``result.world_from_wall`` does; for a wall at z = 0 around the origin both are the same.
+
     import nlos
     capture = nlos.render("scenes/letter/scene.json")
     result = nlos.reconstruct(capture, method="lct")
@@ -132,7 +137,8 @@ def reconstruct(
     method       auto, lct, dlct, fk, phasor, bp, fbp or solver
     calibration  what calibrate() returned, to apply to the capture
     settings     volume, crop, snr, response, falloff, solver, phasor, ...
-    returns      Reconstruction: volume (X, Y, Z), depth_m (X, Y), points_m (N, 3), all in metres
+    returns      Reconstruction: volume (X, Y, Z) at x_m, y_m, z_m and depth_m (X, Y) in the wall's
+                 frame, points_m (N, 3) in the world [m]
     raises       Error when the method cannot serve this capture (it names one that can); Failure
                  when memory does not suffice
     """

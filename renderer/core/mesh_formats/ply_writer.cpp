@@ -21,7 +21,7 @@ void write_body(const std::string& path,
                 std::span<const std::array<std::uint32_t, 3>> triangles) {
     OutputFile output(path);
     std::ofstream file(output.temporary(), std::ios::binary);
-    file << "ply\nformat binary_little_endian 1.0\ncomment metres\n";
+    file << "ply\nformat binary_little_endian 1.0\ncomment metres in the world\n";
     file << "element vertex " << positions.size() << "\n";
     const bool is_far = std::ranges::any_of(positions, needs_double);
     for (const char* name : {"x", "y", "z"}) {

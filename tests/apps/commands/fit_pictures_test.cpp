@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 namespace apps {
@@ -35,13 +36,38 @@ TEST(FitPictures, OverlaysHaveCategories) {
     calib::FitErrors errors;
     errors.true_points.positions = {{0.0, 0.0, 1.0}, {0.5, 0.0, 1.0}};
     errors.fitted_points.positions = {{0.5, 0.0, 1.0}, {0.5, 0.4, 1.0}};
-    const std::vector<nlos::Panel> panels = overlay_panels(errors);
+    const std::vector<nlos::Panel> panels = overlay_panels(errors, core::Transform::Identity());
     ASSERT_EQ(panels.size(), 3U);
     const auto& front = std::get<nlos::ImagePanel>(panels[0]);
     ASSERT_EQ(front.categories.size(), 3U);
     EXPECT_EQ(front.categories[2].first, "both");
     const std::set<float> values(front.values.begin(), front.values.end());
     EXPECT_EQ(values, (std::set<float>{0.0F, 1.0F, 2.0F, 3.0F}));
+}
+
+TEST(FitPictures, OverlaysAreSeenFromTheWallWhereverItIs) {
+    const core::Transform pose = Eigen::Translation3d(1.0, -2.0, 3.0) *
+                                 Eigen::AngleAxisd(0.7, core::Vec3(1.0, 2.0, 0.5).normalized());
+    calib::FitErrors errors;
+    errors.true_points.positions = {{0.0, 0.0, 1.0}, {0.5, 0.0, 1.0}, {0.1, 0.4, 1.2}};
+    errors.fitted_points.positions = {{0.5, 0.0, 1.0}, {0.5, 0.4, 1.0}};
+    const std::vector<nlos::Panel> usual = overlay_panels(errors, core::Transform::Identity());
+    for (auto* points : {&errors.true_points, &errors.fitted_points}) {
+        for (core::Vec3& point : points->positions) point = pose * point;
+    }
+    const std::vector<nlos::Panel> turned = overlay_panels(errors, pose);
+    ASSERT_EQ(turned.size(), usual.size());
+    for (std::size_t i = 0; i < usual.size(); ++i) {
+        const auto& expected = std::get<nlos::ImagePanel>(usual[i]);
+        const auto& found = std::get<nlos::ImagePanel>(turned[i]);
+        EXPECT_NEAR(found.x_range[0], expected.x_range[0], 1e-9);
+        EXPECT_NEAR(found.y_range[0], expected.y_range[0], 1e-9);
+        const auto is_marked = [](float value) { return value > 0.0F; };
+        EXPECT_EQ(std::ranges::count_if(found.values, is_marked),
+                  std::ranges::count_if(expected.values, is_marked));
+    }
+    EXPECT_EQ(std::get<nlos::ImagePanel>(turned[1]).x_label, "depth from the wall [m]");
+    EXPECT_EQ(std::get<nlos::ImagePanel>(turned[2]).x_label, "wall x [m]");
 }
 
 }  // namespace

@@ -87,6 +87,18 @@ TEST(Dataset, DiffersWithTheSeedAndBetweenItems) {
         values.begin(), values.begin() + static_cast<std::ptrdiff_t>(item), &values[item]));
 }
 
+TEST(Dataset, PlacesAndDirectionsStateTheirFrame) {
+    const TemporaryFolder folder;
+    run(folder, tiny_recipe(), "set");
+    const nlos::ArrayReader reader(folder.file("set/shard-00000.h5"));
+    EXPECT_EQ(reader.text_attribute("depth", "frame"), "wall");
+    EXPECT_EQ(reader.text_attribute("depth", "units"), "m");
+    EXPECT_EQ(reader.text_attribute("normals", "frame"), "world");
+    EXPECT_EQ(reader.text_attribute("normals", "units"), "1");
+    EXPECT_EQ(reader.text_attribute("poses", "frame"), "world");
+    EXPECT_EQ(reader.text_attribute("albedo", "frame"), std::nullopt);
+}
+
 TEST(Dataset, MissingAndDamagedShardsAreMadeAgainAndNothingElse) {
     const TemporaryFolder folder;
     run(folder, tiny_recipe(), "set");

@@ -154,3 +154,37 @@ def test_no_copy_of_half_a_gigabyte():
     size, grown = map(float, done.stdout.split())
     assert size == 512.0
     assert grown < 40.0
+
+
+def turned_wall():
+    """A pose of a wall that stands and looks elsewhere: axes in columns, and the middle."""
+    turn, roll = np.radians([40, 20])
+    about_y = np.array([[np.cos(turn), 0, np.sin(turn)], [0, 1, 0], [-np.sin(turn), 0, np.cos(turn)]])
+    about_z = np.array([[np.cos(roll), -np.sin(roll), 0], [np.sin(roll), np.cos(roll), 0], [0, 0, 1]])
+    return about_z @ about_y, np.array([2.0, 0.5, -1.0])
+
+
+def test_wall_frame_leads_to_the_world(square):
+    axes, middle = turned_wall()
+    moved = nlos.Object(square.vertices @ axes.T + middle, square.faces, name="square", albedo=0.5)
+    scene = nlos.Scene(
+        [moved], relay_wall={"center_m": middle.tolist(), "normal": axes[:, 2].tolist(), "up": axes[:, 1].tolist()},
+        scan={"sensing_points": [16, 16]}, time_axis={"opl_start_m": 0.5, "bin_width_m": 0.016, "num_bins": 96})
+    capture = nlos.render(scene)
+    result = nlos.reconstruct(capture, "lct")
+    assert np.allclose(result.world_from_wall[:3, :3], axes, atol=1e-6)
+    assert np.allclose(result.world_from_wall[:3, 3], middle, atol=1e-6)
+    places = result.to_world(result.x_m[:, None], result.y_m, result.depth_m)
+    assert places.shape == (16, 16, 3) and places.dtype == np.float64
+    surface = places[~np.isnan(result.depth_m)]
+    assert len(surface) >= 4 and np.allclose(surface, result.points_m, atol=1e-9)
+    assert np.allclose((surface - middle) @ axes[:, 2], 0.5, atol=0.01)
+    assert np.allclose(result.to_world(0.1, -0.2, 0.5), axes @ [0.1, -0.2, 0.5] + middle, atol=1e-6)
+    truth = scene.depth_map()
+    assert np.allclose(truth["world_from_wall"], result.world_from_wall, atol=1e-6)
+    for operator in (nlos.PairOperator(capture, x_m=[0.0], y_m=[0.0], z_m=[0.5]), nlos.LightConeOperator(capture)):
+        assert np.allclose(operator.world_from_wall, result.world_from_wall, atol=1e-6)
+        assert np.allclose(operator.to_world(0, 0, 1), axes[:, 2] + middle, atol=1e-6)
+    for wrong in ([1, "a"], [1, 2j]):
+        with pytest.raises(nlos.Error, match="y_m"):
+            result.to_world(0, wrong, 0)

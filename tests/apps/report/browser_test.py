@@ -14,6 +14,7 @@ import argparse
 import base64
 import io
 import json
+import re
 import subprocess
 import sys
 import tempfile
@@ -103,6 +104,19 @@ class Pages:
         self.nlos("simulate-noise", "data/letter.h5", "-o", counts, "--photons", 2e4)
         self.nlos("view", counts, "scenes/letter/scene.json", "-o", page, "--no-browser")
         return page
+
+    def turned_wall(self) -> Path:
+        """A wall that stands elsewhere and looks along the world's x, and the letter before it."""
+        folder = self.results("turned")
+        scene, capture = self.folder / "turned.json", self.folder / "turned.h5"
+        letter = {"mesh": str(ROOT / "scenes/letter/scene.glb"), "rotation_deg": [0, 90, 0],
+                  "translation_m": [2, 0.5, -1]}
+        scene.write_text(json.dumps({
+            "relay_wall": {"center_m": [2, 0.5, -1], "normal": [1, 0, 0]}, "objects": {"letter": letter},
+            "scan": {"sensing_points": [16, 16]}, "time_axis": {"num_bins": 512}}))
+        self.nlos("render", scene, "-o", capture)
+        self.nlos("reconstruct", capture, "-o", folder / "v.h5", "--method", "lct")
+        return self.report(folder)
 
     def hostile(self) -> Path:
         folder = self.results("hostile")
@@ -293,6 +307,24 @@ def use_table(browser: Browser) -> None:
     check(len(orders) == 2, "a second click turns the order around")
 
 
+def voxel_shown(browser: Browser):
+    """The numbers of the sentence that tells where the slices are cut."""
+    slices = browser.views("slices")[0]
+    said = slices.find_element(By.CLASS_NAME, "view-readout").text.replace("\u2212", "-")
+    place = re.match(r"Voxel at wall x (\S+) m, wall y (\S+) m, depth (\S+) m"
+                     r"(?: \(in the world (\S+), (\S+), (\S+) m\))?: value ", said)
+    check(place, f"found {said!r}")
+    return [None if number is None else float(number) for number in place.groups()]
+
+
+def expect_world_beside_wall(browser: Browser, page: Path) -> None:
+    browser.open(page)
+    x, y, depth, *world = voxel_shown(browser)
+    expected = [2 + depth, 0.5 + y, -1 - x]  # wall x is up x normal
+    check(all(abs(a - b) < 2e-3 for a, b in zip(world, expected)), f"{world} instead of {expected}")
+    browser.expect_quiet(page)
+
+
 def use_demo(browser: Browser, page: Path) -> None:
     browser.open(page)
     use_space(browser, browser.views("space")[0])
@@ -300,6 +332,7 @@ def use_demo(browser: Browser, page: Path) -> None:
     use_slices(browser, browser.views("slices")[0])
     use_pair(browser, browser.views("pair")[0])
     use_table(browser)
+    check(voxel_shown(browser)[3] is None, "the demo's wall has the world's frame")
     browser.expect_quiet(page)
 
 
@@ -343,6 +376,7 @@ def main() -> int:
         try:
             demo = pages.demo()
             use_demo(browser, demo)
+            expect_world_beside_wall(browser, pages.turned_wall())
             compare_screens(browser, demo, arguments.update, keep)
             for make in (pages.sequence, pages.doppler, pages.fit, pages.bench,
                          pages.list_of_points, pages.hostile):

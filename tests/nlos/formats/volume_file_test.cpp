@@ -99,6 +99,42 @@ TEST(VolumeFile, DatasetsHaveTheNamesAndShapesOfTheContract) {
     EXPECT_EQ(file.real_attribute("/", "seconds"), std::vector<double>{1.5});
 }
 
+const std::vector<std::string> kPlaces{"x_m", "y_m", "z_m", "depth_m", "depth_sigma_m", "points"};
+const std::vector<std::string> kDirections{"normals", "point_normals"};
+
+TEST(VolumeFile, PlacesAndDirectionsStateTheirFrameAndUnit) {
+    const TemporaryFolder folder;
+    write_volume(folder.file("v.h5"), example_reconstruction());
+    const ArrayReader file(folder.file("v.h5"));
+    for (const auto& [names, unit] : {std::pair{kPlaces, "m"}, std::pair{kDirections, "1"}}) {
+        for (const std::string& name : names) {
+            EXPECT_EQ(file.text_attribute(name, "frame"),
+                      name.starts_with("point") ? "world" : "wall");
+            EXPECT_EQ(file.text_attribute(name, "units"), unit) << name;
+        }
+    }
+}
+
+TEST(VolumeFile, FilesThatStateNoFrameAreRead) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("v.h5");
+    const Reconstruction written = example_reconstruction();
+    write_volume(path, written);
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    for (const auto& names : {kPlaces, kDirections}) {
+        for (const std::string& name : names) {
+            for (const char* attribute : {"frame", "units"}) {
+                EXPECT_GE(H5Adelete_by_name(file, name.c_str(), attribute, H5P_DEFAULT), 0);
+            }
+        }
+    }
+    H5Fclose(file);
+    const Reconstruction read = read_volume(path);
+    EXPECT_EQ(read.volume.axes.x_m, written.volume.axes.x_m);
+    EXPECT_EQ(read.depth.point_world(1, 0), written.points.positions[0]);
+    EXPECT_EQ(read.points.positions, written.points.positions);
+}
+
 TEST(VolumeFile, OtherFilesAreRefused) {
     const TemporaryFolder folder;
     const std::string capture = folder.file("c.h5");

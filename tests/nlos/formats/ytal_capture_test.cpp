@@ -82,6 +82,18 @@ TEST(YtalCapture, FramesSurviveTheRoundTrip) {
     }
 }
 
+TEST(YtalCapture, PointsAndNormalsStateThatTheyAreInTheWorld) {
+    const CaptureFile file(example_capture(ScanPattern::Single));
+    const ArrayReader reader(file.path());
+    for (const std::string device : {"sensor", "laser"}) {
+        for (const std::string name : {"_xyz", "_grid_xyz", "_grid_normals"}) {
+            EXPECT_EQ(reader.text_attribute(device + name, "frame"), "world");
+            EXPECT_EQ(reader.text_attribute(device + name, "units"),
+                      name == "_grid_normals" ? "1" : "m");
+        }
+    }
+}
+
 TEST(YtalCapture, ImagesHaveNullGrids) {
     const CaptureFile file(test_support::example_image());
     const ArrayReader reader(file.path());

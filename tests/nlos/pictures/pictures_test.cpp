@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -21,6 +22,33 @@ using test_support::kBackground;
 
 const ImagePanel& image(const Panel& panel) {
     return std::get<ImagePanel>(panel);
+}
+
+/// The labels of a picture's axes, x before y.
+std::vector<std::array<std::string, 2>> axes_of(const std::vector<Panel>& panels) {
+    std::vector<std::array<std::string, 2>> labels;
+    for (const Panel& panel : panels) {
+        std::visit([&](const auto& p) { labels.push_back({p.x_label, p.y_label}); }, panel);
+    }
+    return labels;
+}
+
+TEST(Pictures, AxesSayThatTheyAreTheWalls) {
+    using Labels = std::vector<std::array<std::string, 2>>;
+    const Reconstruction result = test_support::column_volume({1.0F, 1.0F}, {0.701, 0.7});
+    EXPECT_EQ(axes_of(volume_panels(result)),
+              (Labels{{"wall x [m]", "wall y [m]"},
+                      {"depth from the wall [m]", "wall y [m]"},
+                      {"wall x [m]", "depth from the wall [m]"},
+                      {"wall x [m]", "wall y [m]"}}));
+    const core::DepthMap truth = test_support::truth_of(result, {0.7, 0.7});
+    EXPECT_EQ(axes_of(comparison_panels(result, truth)), Labels(3, {"wall x [m]", "wall y [m]"}));
+    EXPECT_EQ(image(truth_panels(truth)[0]).value_label, "depth from the wall [m]");
+    const core::Capture capture = test_support::example_capture(core::ScanPattern::Confocal);
+    EXPECT_EQ(axes_of(capture_panels(capture)),
+              (Labels{{"wall x [m]", "path length [m]"},
+                      {"wall x [m]", "wall y [m]"},
+                      {"path length [m]", "radiance per bin"}}));
 }
 
 TEST(Pictures, ErrorMapsOfASceneShareOneScale) {

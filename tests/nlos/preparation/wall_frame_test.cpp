@@ -37,6 +37,17 @@ TEST(WallFrame, RecoversPoseAndPitchOfARotatedGrid) {
     EXPECT_NEAR(wall.max_m[1], 0.12, 1e-9);
 }
 
+TEST(WallFrame, IsDescribedInTheWorld) {
+    EXPECT_EQ(describe_wall_frame(core::Transform::Identity()), "the world's");
+    core::Transform pose = core::Transform::Identity();
+    pose.translate(Vec3(1e-8, -1e-9, 0.0));  // as rounding makes it
+    EXPECT_EQ(describe_wall_frame(pose), "the world's");
+    pose = Eigen::Translation3d(3.0, 0.0, -1.5) * Eigen::AngleAxisd(core::kPi, Vec3::UnitY());
+    EXPECT_EQ(describe_wall_frame(pose),
+              "from (3, 0, -1.5) m of the world, wall x along (-1, 0, 0), wall y along (0, 1, 0), "
+              "depth along (0, 0, -1)");
+}
+
 TEST(WallFrame, CountsUpWhereTheCaptureCountsDown) {
     core::WallPoints points = wall_grid({4, 6}, {0.02, 0.03});
     for (Vec3& position : points.positions) position.y() = -position.y();

@@ -2,7 +2,6 @@
 """MATLAB's HDF5 functions, which Octave lacks, for the functions beside this file.
 
     hdf5.py create|write|read FILE DATASET DATA.mat       create: DATA.mat holds the extents
-    hdf5.py attribute FILE DATASET NAME DATA.mat
 
 MATLAB counts dimensions fastest first, HDF5 slowest first.
 """
@@ -11,7 +10,7 @@ import sys
 import h5py
 import scipy.io
 
-action, path, dataset, *names, exchange = sys.argv[1:]
+action, path, dataset, exchange = sys.argv[1:]
 if action == "read":
     with h5py.File(path) as file:
         scipy.io.savemat(exchange, {"data": file[dataset][()].T}, oned_as="column")
@@ -20,7 +19,5 @@ else:
     with h5py.File(path, "a") as file:
         if action == "create":
             file.create_dataset(dataset, data.astype(int).ravel()[::-1])
-        elif action == "write":
-            file[dataset][...] = data.T.reshape(file[dataset].shape)
         else:
-            file[dataset].attrs[names[0]] = data.T
+            file[dataset][...] = data.T.reshape(file[dataset].shape)
