@@ -138,7 +138,7 @@ def reconstruct(
     calibration  what calibrate() returned, to apply to the capture
     settings     volume, crop, snr, response, falloff, solver, phasor, ...
     returns      Reconstruction: volume (X, Y, Z) at x_m, y_m, z_m and depth_m (X, Y) in the wall's
-                 frame, points_m (N, 3) in the world [m]
+                 frame, points_m (N, 3) in the world, all in metres
     raises       Error when the method cannot serve this capture (it names one that can); Failure
                  when memory does not suffice
     """
