@@ -34,8 +34,8 @@ struct ViewArguments {
 void add_size_option(Command& command, ReportOptions& options) {
     CLI::Option& size = *command.add_option("--data-mb",
                                             options.data_mb,
-                                            "Most that volumes and films may take [MB]; larger "
-                                            "ones are shown more coarsely");
+                                            "Most that the page takes beside its scripts [MB]; "
+                                            "what does not fit is shown smaller, or named");
     limit(*size.capture_default_str(), {0.1, true, 1e4, true});
 }
 
@@ -60,12 +60,18 @@ bool open_in_browser(const std::string& path) {
            0;
 }
 
+void note_reductions(const std::string& reductions) {
+    if (!reductions.empty()) print_notes("reduced", {reductions});
+}
+
 void run_report(const ReportArguments& arguments) {
     require_suffix(arguments.output, {".html", ".htm"});
     const ProgressBar bar("report");
     const ReportOptions& options = arguments.options;
-    write_report(arguments.output, read_results_folder(arguments.folder, options.scene), options);
+    const std::string reductions = write_report(
+        arguments.output, read_results_folder(arguments.folder, options.scene), options);
     print_written({arguments.output});
+    note_reductions(reductions);
 }
 
 void run_view(const ViewArguments& arguments) {
@@ -73,10 +79,12 @@ void run_view(const ViewArguments& arguments) {
     require_suffix(page, {".html", ".htm"});
     const ProgressBar bar("view");
     const nlos::CaptureReadSettings settings = capture_options(arguments.overrides).capture;
-    write_report(page, read_result_files(arguments.files, settings), arguments.options);
+    const std::string reductions =
+        write_report(page, read_result_files(arguments.files, settings), arguments.options);
     note_written({page});
     const bool opened = !arguments.keep_closed && open_in_browser(page);
     print("wrote {}{}\n", page, opened ? "" : "; open it in a browser");
+    note_reductions(reductions);
 }
 
 void declare_report(Command& command) {

@@ -185,9 +185,16 @@ AnimationView halved(const AnimationView& view) {
     return half;
 }
 
-core::Json animation_json(const AnimationView& view,
+int halvings_of(const AnimationView& view) {
+    return view.labels.empty() ? halvings_of(view.num_bins) : 0;
+}
+
+core::Json animation_json(AnimationView view,
                           const core::Transform& frame_from_world,
+                          int halvings,
                           PageArrays& arrays) {
+    halvings = std::min(halvings, halvings_of(view));
+    for (int i = 0; i < halvings; ++i) view = halved(view);
     constexpr std::array kKinds{"wall", "camera", "list"};  // in the order of AnimationView::Kind
     core::Json values = arrays.add(view.codes);
     values.update({{"coding", "log"}, {"low", view.coding.low}, {"high", view.coding.high}});

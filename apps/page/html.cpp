@@ -1,27 +1,25 @@
 // SPDX-License-Identifier: MIT
 #include "apps/page/html.h"
 
+#include "renderer/core/error.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <optional>
 
 namespace apps {
 namespace {
 
-// Pictures of results have two pixels for each one on an ordinary screen.
-constexpr int kPixelDensity = 2;
-constexpr int kNarrowest = 560;  // smaller pictures of others are shown as large as they are
-
-/// The width that a PNG file gives: bytes 16 to 19, the highest first; nothing for other files.
-std::optional<int> png_width(std::string_view bytes) {
-    if (bytes.size() < 24 || !bytes.starts_with("\x89PNG\r\n\x1a\n")) return std::nullopt;
-    int width = 0;
-    for (std::size_t i = 16; i < 20; ++i)
-        width = width * 256 + static_cast<unsigned char>(bytes[i]);
-    return width;
+/// Text as core::printable() has it, on as many lines as before.
+std::string printable_lines(std::string_view text) {
+    std::string lines;
+    for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+        lines += core::printable(text.substr(0, end)) + '\n';
+        text.remove_prefix(end + 1);
+    }
+    return lines + core::printable(text);
 }
 
 }  // namespace
@@ -31,7 +29,7 @@ std::string escape_html(std::string_view text) {
         {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}}};
     std::string escaped;
     escaped.reserve(text.size());
-    for (const char c : text) {
+    for (const char c : printable_lines(text)) {
         const auto* special =
             std::ranges::find(kEntities, c, &decltype(kEntities)::value_type::first);
         escaped += special == kEntities.end() ? std::string_view(&c, 1) : special->second;
@@ -56,21 +54,6 @@ std::string encode_base64(std::string_view bytes) {
         }
     }
     return text;
-}
-
-std::string embedded_image(std::string_view bytes,
-                           std::string_view mime_type,
-                           std::string_view alternative) {
-    std::string width;
-    if (const std::optional<int> pixels = png_width(bytes)) {
-        const int shown = std::max(*pixels / kPixelDensity, std::min(*pixels, kNarrowest));
-        width = fmt::format(" width=\"{}\"", shown);
-    }
-    return fmt::format("<img src=\"data:{};base64,{}\"{} alt=\"{}\">",
-                       mime_type,
-                       encode_base64(bytes),
-                       width,
-                       escape_html(alternative));
 }
 
 std::string figure_html(const std::string& image, const std::string& caption) {

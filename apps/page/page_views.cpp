@@ -19,7 +19,6 @@ extern const char* const kViewerScripts;
 
 namespace {
 
-constexpr int kMostHalvings = 12;
 constexpr std::size_t kMaxTriangles = 60'000;  // a page turns them at once, in about a megabyte
 constexpr double kSimplified = 0.002;          // of the mesh's size, by which surfaces may move
 
@@ -116,13 +115,13 @@ core::Json rows_of(const core::Transform& transform) {
     return rows;
 }
 
-core::Json views_json(const PageViews& views, int halvings, PageArrays& arrays) {
+core::Json views_json(const PageViews& views, const ViewDetail& detail, PageArrays& arrays) {
     const PageWall wall = page_wall(views);
     core::Json json{{"version", 1},
                     {"wall", wall.footprint},
                     {"colours", colours_json()},
                     {"results", core::Json::array()},
-                    {"best", views.best + (views.truth ? 1 : 0)},
+                    {"best", 0},
                     {"animations", core::Json::array()}};
     if (!nlos::is_world_frame(wall.frame_from_world)) {
         json["world_from_wall"] = rows_of(wall.frame_from_world.inverse(Eigen::Isometry));
@@ -144,13 +143,15 @@ core::Json views_json(const PageViews& views, int halvings, PageArrays& arrays) 
         json["results"].push_back(
             truth_json(*true_depth, views.truth->name, scales, wall.frame_from_world, arrays));
     }
-    for (const ResultView& result : views.results) {
+    for (std::size_t i = 0; i < views.results.size(); ++i) {
+        if (!detail.shows_result(views, i)) continue;
+        if (i == views.best) json["best"] = json["results"].size();
         json["results"].push_back(
-            result_json(result, scales, wall.frame_from_world, halvings, arrays));
+            result_json(views.results[i], scales, wall.frame_from_world, detail.halvings, arrays));
     }
-    for (AnimationView animation : views.animations) {
-        for (int i = 0; i < halvings; ++i) animation = halved(animation);
-        json["animations"].push_back(animation_json(animation, wall.frame_from_world, arrays));
+    for (std::size_t i = 0; i < std::min(detail.most, views.animations.size()); ++i) {
+        json["animations"].push_back(
+            animation_json(views.animations[i], wall.frame_from_world, detail.halvings, arrays));
     }
     return json;
 }
@@ -166,6 +167,40 @@ std::string script_json(const core::Json& json) {
         }
     }
     return text;
+}
+
+std::string data_html(const PageViews& views, const ViewDetail& detail) {
+    PageArrays arrays;
+    const core::Json json = views_json(views, detail, arrays);
+    return "<script type=\"application/json\" id=\"nlos-data\">" + script_json(json) +
+           "</script>\n" + arrays.html();
+}
+
+/// So often can a view be halved.
+int halvings_of(const PageViews& views) {
+    int most = 0;
+    for (const ResultView& result : views.results) {
+        most = std::max(most, halvings_of(result.volume));
+    }
+    for (const AnimationView& animation : views.animations) {
+        most = std::max(most, halvings_of(animation));
+    }
+    return most;
+}
+
+/// Takes detail away. returns   whether there was any
+///
+/// ratio   of what the data take to what they may take
+bool reduce(ViewDetail& detail, int most_halvings, double ratio) {
+    if (detail.halvings < most_halvings) {
+        const int needed = std::max(1, static_cast<int>(std::log2(ratio)));
+        detail.halvings = std::min(most_halvings, detail.halvings + needed);
+        return true;
+    }
+    if (detail.most == 0) return false;
+    const auto share = static_cast<std::size_t>(static_cast<double>(detail.most) / ratio);
+    detail.most = std::min(detail.most - 1, share);
+    return true;
 }
 
 }  // namespace
@@ -186,17 +221,31 @@ TruthView truth_view(const std::string& scene_path, std::vector<ResultView>& res
     return view;
 }
 
-std::string views_html(const PageViews& views, double limit_bytes) {
-    if (views.empty()) return "";
-    std::string data;
-    for (int halvings = 0; halvings <= kMostHalvings; ++halvings) {
-        PageArrays arrays;
-        const core::Json json = views_json(views, halvings, arrays);
-        data = "<script type=\"application/json\" id=\"nlos-data\">" + script_json(json) +
-               "</script>\n" + arrays.html();
-        if (static_cast<double>(data.size()) <= limit_bytes) break;
+bool ViewDetail::shows_result(const PageViews& views, std::size_t index) const {
+    if (most == 0) return false;
+    return index == views.best || index < (views.best < most ? most : most - 1);
+}
+
+std::string FittedViews::html() const {
+    return data.empty() ? "" : data + kViewerScripts;
+}
+
+FittedViews fit_views(const PageViews& views, double limit_bytes) {
+    FittedViews fitted;
+    if (views.empty()) return fitted;
+    fitted.detail.most = std::max(views.results.size(), views.animations.size());
+    limit_bytes = std::max(1.0, limit_bytes);
+    const int most_halvings = halvings_of(views);
+    for (;;) {
+        fitted.data = data_html(views, fitted.detail);
+        const auto bytes = static_cast<double>(fitted.data.size());
+        if (fitted.whole_bytes == 0.0) fitted.whole_bytes = bytes;
+        if (bytes <= limit_bytes) return fitted;
+        if (!reduce(fitted.detail, most_halvings, bytes / limit_bytes)) break;
     }
-    return data + kViewerScripts;
+    fitted.data.clear();
+    fitted.detail.has_views = false;
+    return fitted;
 }
 
 }  // namespace apps

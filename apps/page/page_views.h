@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,11 +46,16 @@ AnimationView animation_view(const core::Capture& capture, const std::string& na
 /// The animation with pairs of bins as one; of frames: as it is.
 AnimationView halved(const AnimationView& animation);
 
+/// How often an animation can be halved until it has 16 bins or fewer; of frames: 0.
+int halvings_of(const AnimationView& animation);
+
 /// What the page's script reads of an animation.
 ///
 /// frame_from_world   of the positions
-core::Json animation_json(const AnimationView& animation,
+/// halvings           how often it is halved, unless it is small before
+core::Json animation_json(AnimationView animation,
                           const core::Transform& frame_from_world,
+                          int halvings,
                           PageArrays& arrays);
 
 /// The hidden scene as it is.
@@ -77,14 +83,34 @@ struct PageViews {
     bool empty() const { return !has_space() && animations.empty(); }
 };
 
-/// Script elements with all data of the views, and with the scripts that show them.
+/// How much of the views a page has room for.
+struct ViewDetail {
+    int halvings = 0;  ///< of volumes and animations, each at most down to 16 voxels or bins
+    std::size_t most = std::numeric_limits<std::size_t>::max();  ///< results, and animations, shown
+    bool has_views = true;                                       ///< or there is no room for any
+
+    /// Whether the result of this index is shown: the first ones are, and the best.
+    bool shows_result(const PageViews& views, std::size_t index) const;
+};
+
+/// The views of a page, as far as there is room for them.
+struct FittedViews {
+    std::string data;          ///< script elements with all data of the views; empty: no views
+    double whole_bytes = 0.0;  ///< of the data, if all were shown as it is
+    ViewDetail detail;
+
+    /// The data, and the scripts that show them: another 1 MB.
+    std::string html() const;
+};
+
+/// Makes the data of the views as large as a page has room for.
 ///
 /// The data have 8 bits per voxel and per bin, 16 per coordinate and per value of a map, and are
 /// compressed. Where they would be larger than the limit, all volumes and animations are halved
-/// along their longest axis until they are not, and the views say so.
+/// along their longest axis until they are not, and the views say so. Where that is not enough,
+/// only some results and animations are shown, and at last none.
 ///
-/// limit_bytes   of the data; the scripts are another 0.9 MB
-/// returns       nothing for no views
-std::string views_html(const PageViews& views, double limit_bytes);
+/// limit_bytes   of the data
+FittedViews fit_views(const PageViews& views, double limit_bytes);
 
 }  // namespace apps

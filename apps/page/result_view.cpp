@@ -126,6 +126,7 @@ core::Json points_json(const core::DepthMap& depth,
 }
 
 core::Json volume_json(VolumeView volume, int halvings, PageArrays& arrays) {
+    halvings = std::min(halvings, halvings_of(volume));
     for (int i = 0; i < halvings; ++i) volume = halved(volume);
     core::Json values = arrays.add(volume.codes);
     values.update({{"coding", "linear"}, {"low", 0.0}, {"high", volume.highest}});
@@ -191,6 +192,18 @@ VolumeView halved(const VolumeView& volume) {
         }
     }
     return half;
+}
+
+int halvings_of(std::size_t count) {
+    constexpr std::size_t kFew = 16;
+    int halvings = 0;
+    for (; count > kFew; count = (count + 1) / 2) ++halvings;
+    return halvings;
+}
+
+int halvings_of(const VolumeView& volume) {
+    const auto& [x, y, z] = volume.size;
+    return halvings_of(x) + halvings_of(y) + halvings_of(z);
 }
 
 MapScales map_scales(const std::vector<ResultView>& results,

@@ -41,6 +41,10 @@ ResultView result_view(const nlos::Reconstruction& result, const std::string& fi
 /// brighter.
 VolumeView halved(const VolumeView& volume);
 
+/// How often so many voxels or bins can be halved until they are 16 or fewer.
+int halvings_of(std::size_t count);
+int halvings_of(const VolumeView& volume);
+
 /// The scales of maps that stand beside one another: depth, its error, its standard deviation.
 struct MapScales {
     std::array<double, 2> depth_m{0.0, 1.0};
@@ -55,7 +59,7 @@ MapScales map_scales(const std::vector<ResultView>& results,
 /// What the page's script reads of a result.
 ///
 /// frame_from_world   of the page; the volume is left out where the result's wall is another
-/// halvings           how often its volume is halved
+/// halvings           how often its volume is halved, unless it is small before
 core::Json result_json(const ResultView& result,
                        const MapScales& scales,
                        const core::Transform& frame_from_world,

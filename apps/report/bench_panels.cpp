@@ -82,7 +82,7 @@ bool is_collection_of_benches(const core::Json& json) {
 
 BenchPanel read_bench_panel(const std::string& path, const core::Json& json) {
     BenchPanel panel;
-    panel.file = fs::path(path).filename().string();
+    panel.file = shown_file(path);
     panel.facts = {{"Version", text_of(json, "program")},
                    {"Machine", text_of(json, "machine")},
                    {"Libraries", text_of(json, "libraries")}};
@@ -93,37 +93,32 @@ BenchPanel read_bench_panel(const std::string& path, const core::Json& json) {
 void give_figures_to_benches(std::vector<Figure>& figures, std::vector<BenchPanel>& benches) {
     std::set<std::string> drawn;  // .svg: these need no .png
     for (const Figure& figure : figures) {
-        if (figure.mime_type == "image/svg+xml") drawn.insert(stem_of(figure.file));
+        if (figure.file.ends_with(".svg")) drawn.insert(stem_of(figure.file));
     }
     for (BenchPanel& panel : benches) {
         std::erase_if(figures, [&](Figure& figure) {
             const std::string stem = stem_of(figure.file);
             if (!stem.starts_with(stem_of(panel.file))) return false;
-            const bool again = figure.mime_type == "image/png" && drawn.contains(stem);
+            const bool again = figure.file.ends_with(".png") && drawn.contains(stem);
             if (!again) panel.figures.push_back(std::move(figure));
             return true;
         });
     }
 }
 
-std::string benches_html(const std::vector<BenchPanel>& benches) {
-    std::string html;
-    for (const BenchPanel& panel : benches) {
-        html += fmt::format("<article><h3>{}</h3>\n", escape_html(panel.file));
-        const auto add_tables = [&](bool are_long) {
-            for (const Table& table : panel.tables) {
-                if ((table.rows.size() >= kLongTable) == are_long) html += table_html(table);
-            }
-        };
-        add_tables(false);
-        for (const Figure& figure : panel.figures) {
-            html += figure_html(embedded_image(figure.bytes, figure.mime_type, figure.file),
-                                escape_html(figure.file));
+std::string bench_html(const BenchPanel& panel, PagePictures& pictures) {
+    std::string html = fmt::format("<article><h3>{}</h3>\n", escape_html(panel.file));
+    const auto add_tables = [&](bool are_long) {
+        for (const Table& table : panel.tables) {
+            if ((table.rows.size() >= kLongTable) == are_long) html += table_html(table);
         }
-        add_tables(true);
-        html += facts_html(panel.facts) + "</article>\n";
+    };
+    add_tables(false);
+    for (const Figure& figure : panel.figures) {
+        html += figure_html(pictures.image(figure.bytes, figure.file), escape_html(figure.file));
     }
-    return html;
+    add_tables(true);
+    return html + facts_html(panel.facts) + "</article>\n";
 }
 
 std::string hard_cases_html(const core::Json& cases) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "apps/page/page_pictures.h"
 #include "apps/report/result_panels.h"
 #include "apps/tables/tables.h"
 #include "renderer/core/settings/json_fwd.h"
@@ -13,8 +14,7 @@ namespace apps {
 /// A picture lying in the folder.
 struct Figure {
     std::string file;
-    std::string mime_type;
-    std::string bytes;
+    std::string bytes;  ///< of a .png or .svg file
 };
 
 /// What a benchmark found, see bench/output.h.
@@ -39,8 +39,8 @@ BenchPanel read_bench_panel(const std::string& path, const core::Json& json);
 /// Moves figures whose names begin with a benchmark's to it, one format of each.
 void give_figures_to_benches(std::vector<Figure>& figures, std::vector<BenchPanel>& benches);
 
-/// The benchmarks as HTML: what they ran on, short tables, plots, and long tables folded.
-std::string benches_html(const std::vector<BenchPanel>& benches);
+/// A benchmark as HTML: what it ran on, short tables, plots, and long tables folded.
+std::string bench_html(const BenchPanel& panel, PagePictures& pictures);
 
 /// The table of hard cases as HTML.
 ///

@@ -178,6 +178,10 @@ std::string short_number(double value) {
     return fmt::format("{:.3g}", value);
 }
 
+std::string shown_file(const std::filesystem::path& path) {
+    return core::printable(path.filename().string());
+}
+
 std::string read_bytes(const std::string& path) {
     const core::MappedFile file(path, "must be a readable file");
     file.require_stored();
@@ -191,7 +195,7 @@ std::string picture_beside(const std::string& path) {
 
 ResultPanel capture_panel(const std::string& path, const core::Capture& capture) {
     ResultPanel panel;
-    panel.file = fs::path(path).filename().string();
+    panel.file = shown_file(path);
     panel.picture_png = nlos::encode_panels(nlos::capture_panels(capture), kCaptureColumns);
     panel.facts = capture_facts(capture);
     panel.notes = capture.notes;
@@ -201,7 +205,7 @@ ResultPanel capture_panel(const std::string& path, const core::Capture& capture)
 
 ResultPanel volume_panel(const std::string& path, const nlos::Reconstruction& result) {
     ResultPanel panel;
-    panel.file = fs::path(path).filename().string();
+    panel.file = shown_file(path);
     panel.picture_png = nlos::encode_panels(nlos::volume_panels(result), kVolumeColumns);
     panel.facts = volume_facts(result);
     panel.settings = core::write_value(result.settings);
@@ -210,7 +214,7 @@ ResultPanel volume_panel(const std::string& path, const nlos::Reconstruction& re
 
 ResultPanel fit_panel(const std::string& path, const core::Json& json) {
     ResultPanel panel;
-    panel.file = fs::path(path).filename().string();
+    panel.file = shown_file(path);
     panel.facts = fit_facts(calib::read_fit(path), json);
     panel.picture_png = picture_beside(path);
     for (const char* key : {"warnings", "unidentifiable"}) {
@@ -233,7 +237,7 @@ ResultPanel fit_panel(const std::string& path, const core::Json& json) {
 ResultPanel track_panel(const std::string& path, const core::Json& json) {
     const std::vector<calib::TrackedFrame> frames = calib::read_track(path);
     ResultPanel panel;
-    panel.file = fs::path(path).filename().string();
+    panel.file = shown_file(path);
     std::size_t named = 0;
     std::size_t most = 0;
     std::vector<double> sigmas_m;

@@ -5,6 +5,7 @@
 #include "renderer/core/capture/capture.h"
 #include "renderer/core/settings/json_file.h"
 
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,6 +34,10 @@ ResultPanel capture_panel(const std::string& path, const core::Capture& capture)
 ResultPanel volume_panel(const std::string& path, const nlos::Reconstruction& result);
 ResultPanel fit_panel(const std::string& path, const core::Json& json);
 ResultPanel track_panel(const std::string& path, const core::Json& json);
+
+/// A file's name without its folder, as core::printable() has it: the same wherever a page names
+/// it.
+std::string shown_file(const std::filesystem::path& path);
 
 /// A number with three significant digits and no exponent where it can be avoided.
 std::string short_number(double value);

@@ -36,8 +36,8 @@ std::string shown_name(const std::string& stem) {
 
 ScoredResult scored_result(const fs::path& path, const core::Json& json) {
     ScoredResult scored;
-    scored.file = path.filename().string();
-    scored.name = shown_name(path.stem().string());
+    scored.file = shown_file(path);
+    scored.name = shown_name(fs::path(scored.file).stem().string());
     scored.result = file_name_at(json, "result");
     scored.reference = file_name_at(json, "reference");
     if (!scored.reference.empty()) scored.reference_path = json["reference"].get<std::string>();
@@ -69,7 +69,7 @@ bool is_measurement(const std::string& suffix) {
 void read_measurement(const fs::path& path,
                       const nlos::CaptureReadSettings& settings,
                       ResultsFolder& results) {
-    const std::string name = path.filename().string();
+    const std::string name = shown_file(path);
     if (nlos::is_volume_file(path.string())) {
         const nlos::Reconstruction volume = nlos::read_volume(path.string());
         results.volumes.push_back(volume_panel(path.string(), volume));
@@ -84,7 +84,7 @@ void read_measurement(const fs::path& path,
 }
 
 void read_json(const fs::path& path, ResultsFolder& results) {
-    const std::string name = path.filename().string();
+    const std::string name = shown_file(path);
     core::Json json = core::read_json_file(path.string());
     if (is_metrics(json)) {
         results.scores.push_back(scored_result(path, json));
@@ -111,14 +111,13 @@ void read_file(const fs::path& path, ResultsFolder& results) {
     } else if (suffix == ".json") {
         read_json(path, results);
     } else if (suffix == ".png" || suffix == ".svg") {
-        const std::string mime_type = suffix == ".png" ? "image/png" : "image/svg+xml";
-        results.figures.push_back({path.filename().string(), mime_type, read_bytes(path.string())});
+        results.figures.push_back({shown_file(path), read_bytes(path.string())});
     }
 }
 
 /// A message without the folder before file names: a page should not tell where it was made.
 std::string without_folder(std::string message, const fs::path& folder) {
-    const std::string prefix = (folder / "").string();
+    const std::string prefix = core::printable((folder / "").string());
     for (auto at = message.find(prefix); at != std::string::npos; at = message.find(prefix)) {
         message.erase(at, prefix.size());
     }
@@ -270,15 +269,15 @@ ResultsFolder read_results_folder(const std::string& folder, const std::string& 
         throw core::Error(folder, "is not a folder", "must be a folder of results");
     }
     ResultsFolder results;
-    results.name = fs::canonical(folder).filename().string();
+    results.name = shown_file(fs::canonical(folder));
     if (is_dataset(folder)) results.dataset = dataset_panel(folder);
     for (const fs::path& path : visible_files(folder)) {
         if (results.dataset && belongs_to_dataset(path.filename().string())) continue;
         try {
             read_file(path, results);
         } catch (const std::exception& failure) {
-            results.unreadable.emplace_back(path.filename().string(),
-                                            without_folder(failure.what(), folder));
+            results.unreadable.push_back(
+                {shown_file(path), without_folder(failure.what(), folder)});
         }
     }
     complete(folder, scene, results);
@@ -307,7 +306,7 @@ ResultsFolder read_result_files(const std::vector<std::string>& paths,
             throw core::Error(
                 path, "is a shape", "must be a capture, volume, scene.json or result in JSON");
         }
-        results.name += (results.name.empty() ? "" : ", ") + file.filename().string();
+        results.name += (results.name.empty() ? "" : ", ") + shown_file(file);
     }
     complete(fs::path(paths.front()).parent_path(), scene, results);
     return results;

@@ -33,6 +33,12 @@ struct JsonDocument {
     core::Json content;
 };
 
+/// A file that should be a result and is none.
+struct UnreadableFile {
+    std::string file;
+    std::string error;
+};
+
 /// What lies in a results folder, in the order of the files' names.
 struct ResultsFolder {
     std::string name;
@@ -47,7 +53,7 @@ struct ResultsFolder {
     core::Json hard_cases;        ///< the table that hard_cases_tests --report writes; null: none
     std::vector<Figure> figures;  ///< but for those that belong to a file shown
     std::vector<JsonDocument> documents;
-    std::vector<Fact> unreadable;  ///< file and what is wrong with it
+    std::vector<UnreadableFile> unreadable;
     PageViews views;  ///< an animation per capture and a result per volume, in their order
 
     bool empty() const {

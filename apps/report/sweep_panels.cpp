@@ -108,19 +108,15 @@ void give_figures_to_sweeps(std::vector<Figure>& figures, std::vector<SweepPanel
     }
 }
 
-std::string sweeps_html(const std::vector<SweepPanel>& sweeps) {
-    std::string html;
-    for (const SweepPanel& panel : sweeps) {
-        html += fmt::format("<article><h3>{}</h3>\n", escape_html(panel.file));
-        html += facts_html({{"Scene", text_of_cell(panel.content["sweep"].value("scene", Json()))},
-                            {"Runs", fmt::format("{}", panel.content["runs"].size())},
-                            {"Failed", text_of_cell(panel.content.value("num_failed", Json(0)))},
-                            {"Version", text_of_cell(panel.content.value("program", Json()))}});
-        html += "</article>\n" + runs_table(panel.content) + failures_html(panel.content);
-        for (const Figure& figure : panel.figures) {
-            html += figure_html(embedded_image(figure.bytes, figure.mime_type, figure.file),
-                                escape_html(figure.file));
-        }
+std::string sweep_html(const SweepPanel& panel, PagePictures& pictures) {
+    std::string html = fmt::format("<article><h3>{}</h3>\n", escape_html(panel.file));
+    html += facts_html({{"Scene", text_of_cell(panel.content["sweep"].value("scene", Json()))},
+                        {"Runs", fmt::format("{}", panel.content["runs"].size())},
+                        {"Failed", text_of_cell(panel.content.value("num_failed", Json(0)))},
+                        {"Version", text_of_cell(panel.content.value("program", Json()))}});
+    html += "</article>\n" + runs_table(panel.content) + failures_html(panel.content);
+    for (const Figure& figure : panel.figures) {
+        html += figure_html(pictures.image(figure.bytes, figure.file), escape_html(figure.file));
     }
     return html;
 }

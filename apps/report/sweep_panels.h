@@ -22,7 +22,7 @@ bool is_sweep(const core::Json& json);
 /// Moves the figures that a sweep drew to it, one format of each.
 void give_figures_to_sweeps(std::vector<Figure>& figures, std::vector<SweepPanel>& sweeps);
 
-/// The sweeps as HTML: plots, table, runs that failed.
-std::string sweeps_html(const std::vector<SweepPanel>& sweeps);
+/// A sweep as HTML: plots, table, runs that failed.
+std::string sweep_html(const SweepPanel& panel, PagePictures& pictures);
 
 }  // namespace apps

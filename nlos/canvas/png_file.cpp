@@ -3,9 +3,11 @@
 
 #include "renderer/core/error.h"
 
+#include <cairo.h>
 #include <isa-l/crc.h>
 #include <isa-l/igzip_lib.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
@@ -20,6 +22,13 @@ namespace nlos {
 namespace {
 
 constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
+
+struct ReleaseReader {
+    void operator()(cairo_t* context) const { cairo_destroy(context); }
+    void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+};
+using ReaderContext = std::unique_ptr<cairo_t, ReleaseReader>;
+using ReaderSurface = std::unique_ptr<cairo_surface_t, ReleaseReader>;
 
 /// Packs bytes into a zlib stream.
 class Deflater {
@@ -126,6 +135,37 @@ std::string encode_png(const unsigned char* pixels, int width, int height, int s
                                std::string(kRgbOfEightBits, sizeof(kRgbOfEightBits));
     return std::string(kSignature) + chunk("IHDR", header) + chunk("IDAT", deflater.packed()) +
            chunk("IEND", "");
+}
+
+std::optional<Raster> decode_png(std::string_view bytes) {
+    const auto read = [](void* rest, unsigned char* target, unsigned int size) {
+        auto& left = *static_cast<std::string_view*>(rest);
+        if (left.size() < size) return CAIRO_STATUS_READ_ERROR;
+        std::copy_n(left.begin(), size, target);
+        left.remove_prefix(size);
+        return CAIRO_STATUS_SUCCESS;
+    };
+    const ReaderSurface file(cairo_image_surface_create_from_png_stream(read, &bytes));
+    if (cairo_surface_status(file.get()) != CAIRO_STATUS_SUCCESS) return std::nullopt;
+    Raster raster{
+        cairo_image_surface_get_width(file.get()), cairo_image_surface_get_height(file.get()), {}};
+    const ReaderSurface paper(
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, raster.columns, raster.rows));
+    const ReaderContext context(cairo_create(paper.get()));
+    cairo_set_source_rgb(context.get(), 1.0, 1.0, 1.0);
+    cairo_paint(context.get());
+    cairo_set_source_surface(context.get(), file.get(), 0.0, 0.0);
+    cairo_paint(context.get());
+    cairo_surface_flush(paper.get());
+    if (cairo_status(context.get()) != CAIRO_STATUS_SUCCESS) return std::nullopt;
+    const unsigned char* row = cairo_image_surface_get_data(paper.get());
+    for (int y = 0; y < raster.rows; ++y, row += cairo_image_surface_get_stride(paper.get())) {
+        for (int x = 0; x < raster.columns; ++x) {
+            const unsigned char* const pixel = row + std::ptrdiff_t{4} * x;
+            raster.colours.push_back({pixel[2], pixel[1], pixel[0]});
+        }
+    }
+    return raster;
 }
 
 std::string join_animated_png(const std::vector<std::string>& frames, int frames_per_second) {

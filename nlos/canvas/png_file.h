@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "nlos/canvas/raster.h"
+
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace nlos {
@@ -14,6 +18,10 @@ namespace nlos {
 /// stride    bytes from one row to the next, at least 4 width
 /// throws    core::Failure when they cannot be packed
 std::string encode_png(const unsigned char* pixels, int width, int height, int stride);
+
+/// The pixels of a PNG file, on white where it is transparent; of an animated one, its first
+/// picture. returns   nothing of what is no whole PNG file
+std::optional<Raster> decode_png(std::string_view bytes);
 
 /// Joins pictures into an animation that repeats for ever; viewers that know of none show the
 /// first.

@@ -6,6 +6,7 @@
 #include "tests/support/example_capture.h"
 #include "tests/support/example_volume.h"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -149,7 +150,7 @@ TEST(Page, AnimationsShowEachPointsLightInTheWallsOrder) {
     const core::Capture capture = lit_capture(core::ScanPattern::Confocal);
     const AnimationView animation = animation_view(capture, "a.h5");
     PageArrays arrays;
-    const core::Json json = animation_json(animation, core::Transform::Identity(), arrays);
+    const core::Json json = animation_json(animation, core::Transform::Identity(), 0, arrays);
     ASSERT_EQ(json["kind"], "wall");
     const std::vector<double> values = values_of(json["values"], arrays);
     const nlos::WallGrid grid = *nlos::derive_wall_frame(capture.scan.wall()).grid;
@@ -265,24 +266,58 @@ TEST(Page, LargeDataAreHalvedUntilTheyFitAndSaySo) {
     PageViews views;
     views.animations.push_back(
         animation_view(lit_capture(core::ScanPattern::Confocal, 500), "a.h5"));
-    const std::string whole = views_html(views, 1e9);
-    EXPECT_EQ(whole.find("to keep the page small"), std::string::npos);
-    const std::string small = views_html(views, 1.0);
-    EXPECT_NE(small.find("to keep the page small"), std::string::npos);
-    EXPECT_LT(small.size(), whole.size());
+    const FittedViews whole = fit_views(views, 1e9);
+    EXPECT_EQ(whole.data.find("to keep the page small"), std::string::npos);
+    EXPECT_EQ(whole.detail.halvings, 0);
+    EXPECT_EQ(whole.whole_bytes, static_cast<double>(whole.data.size()));
+    const double limit = 0.9 * whole.whole_bytes;
+    const FittedViews small = fit_views(views, limit);
+    EXPECT_NE(small.data.find("to keep the page small"), std::string::npos);
+    EXPECT_LE(static_cast<double>(small.data.size()), limit);
+    EXPECT_EQ(small.detail.most, 1U);
+    EXPECT_EQ(small.whole_bytes, whole.whole_bytes);
+}
+
+TEST(Page, OfVeryManyResultsSomeAreShownAndTheBestAmongThem) {
+    PageViews views;
+    const auto volume = test_support::column_volume({1.0F, 0.5F}, {0.7, 0.71});
+    for (int i = 0; i < 40; ++i) {
+        views.results.push_back(result_view(volume, "v" + std::to_string(i) + ".h5"));
+    }
+    views.best = 33;
+    const double whole = fit_views(views, 1e9).whole_bytes;
+    double last = whole;
+    for (const double share : {0.5, 0.3}) {
+        const FittedViews fitted = fit_views(views, share * whole);
+        EXPECT_LE(static_cast<double>(fitted.data.size()), share * whole);
+        EXPECT_LT(static_cast<double>(fitted.data.size()), last);
+        last = static_cast<double>(fitted.data.size());
+        EXPECT_LT(fitted.detail.most, 40U);
+        EXPECT_GE(fitted.detail.most, 2U);
+        std::size_t shown = 0;
+        for (std::size_t i = 0; i < 40; ++i) shown += fitted.detail.shows_result(views, i) ? 1 : 0;
+        EXPECT_EQ(shown, fitted.detail.most);
+        EXPECT_NE(fitted.data.find("v33.h5"), std::string::npos);
+        EXPECT_EQ(fitted.data.find("v39.h5"), std::string::npos);
+        EXPECT_NE(fitted.data.find(fmt::format("\"best\":{}", fitted.detail.most - 1)),
+                  std::string::npos);
+    }
+    const FittedViews none = fit_views(views, 10.0);
+    EXPECT_FALSE(none.detail.has_views);
+    EXPECT_EQ(none.html(), "");
 }
 
 TEST(Page, NamesCannotEndTheirScript) {
     PageViews views;
     views.animations.push_back(
         animation_view(lit_capture(core::ScanPattern::Confocal), "</script><script>alert(1)"));
-    const std::string html = views_html(views, 1e9);
+    const std::string html = fit_views(views, 1e9).html();
     EXPECT_EQ(html.find("</script><script>alert"), std::string::npos);
     EXPECT_NE(html.find("\\u003c/script>\\u003cscript>alert(1)"), std::string::npos);
 }
 
 TEST(Page, NothingToSeeNeedsNoScript) {
-    EXPECT_EQ(views_html({}, 1e9), "");
+    EXPECT_EQ(fit_views({}, 1e9).html(), "");
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ TEST(Report, ShowsSweepsWithTheirPlotsAndFailures) {
     EXPECT_TRUE(results.documents.empty());
     ASSERT_EQ(results.sweeps[0].figures.size(), 1U);
     EXPECT_EQ(results.figures.size(), 1U) << "other.svg is nobody's";
-    const std::string html = render_report(results, kAllData);
+    const std::string html = render_report(results, kAllData).html;
     EXPECT_TRUE(contains(html, "<th>&lt;photons&gt;<small>noise</small></th>"));
     EXPECT_TRUE(contains(html, "<td>none</td><td>0.25</td>"));
     EXPECT_TRUE(contains(html, "<b>Run 1, 3</b> failed: no &lt;light&gt;"));
@@ -118,7 +118,7 @@ TEST(Report, ShowsFitsWithTheirErrorsAndDoubts) {
     const ResultsFolder results = read_results_folder(folder.path().string());
     ASSERT_EQ(results.fits.size(), 1U);
     EXPECT_TRUE(results.documents.empty());
-    const std::string html = render_report(results, kAllData);
+    const std::string html = render_report(results, kAllData).html;
     EXPECT_TRUE(contains(html, "<h2>Fits</h2>"));
     EXPECT_TRUE(contains(html, "400.00 +- 0.50"));
     EXPECT_TRUE(contains(html, "Warning: light &lt;is&gt; cut off"));
@@ -154,7 +154,7 @@ TEST(Report, ShowsEveryResultOnce) {
     ASSERT_EQ(results.figures.size(), 1U);
     EXPECT_EQ(results.figures[0].file, "plot.svg");
     ASSERT_EQ(results.documents.size(), 1U);
-    const std::string html = render_report(results, kAllData);
+    const std::string html = render_report(results, kAllData).html;
     EXPECT_TRUE(contains(html, "capture.h5"));
     EXPECT_TRUE(contains(html, "volume_bp.h5 against scene.json"));
     EXPECT_EQ(count_of(html, "<article>"), 2U);
@@ -180,7 +180,7 @@ TEST(Report, ShowsBenchmarksWithTheirPlotsAndTables) {
     EXPECT_EQ(results.benches[0].figures.size(), 2U);
     EXPECT_TRUE(results.figures.empty());
     EXPECT_TRUE(results.documents.empty());
-    const std::string html = render_report(results, kAllData);
+    const std::string html = render_report(results, kAllData).html;
     EXPECT_TRUE(contains(html, "<td class=\"text\">error &lt; time</td><td>1.5</td>"));
     EXPECT_TRUE(contains(html, "<td class=\"text\">rel_l2</td>"));
     EXPECT_TRUE(contains(html, "<summary>runs, 100 rows</summary>"));
@@ -194,7 +194,8 @@ TEST(Report, ShowsHardCases) {
         folder.file("hard_cases.json"),
         R"({"hard_cases": [{"name": "sliver", "group": "geometry", "why": "thin & long",
             "must_hold": "area", "worst": 1e-9, "bound": 1e-6, "explanation": ""}]})");
-    const std::string html = render_report(read_results_folder(folder.path().string()), kAllData);
+    const std::string html =
+        render_report(read_results_folder(folder.path().string()), kAllData).html;
     EXPECT_TRUE(contains(html, "geometry: sliver"));
     EXPECT_TRUE(contains(html, "thin &amp; long"));
     EXPECT_TRUE(contains(html, "1.00e-09"));
@@ -203,7 +204,8 @@ TEST(Report, ShowsHardCases) {
 TEST(Report, EscapesEveryText) {
     const TemporaryFolder folder;
     fill(folder);
-    const std::string html = render_report(read_results_folder(folder.path().string()), kAllData);
+    const std::string html =
+        render_report(read_results_folder(folder.path().string()), kAllData).html;
     EXPECT_FALSE(contains(html, "<b>&"));
     EXPECT_TRUE(contains(html, "&lt;b&gt;&amp;"));
     EXPECT_TRUE(contains(html, "nlos render &lt;scene&gt; &amp; more"));
@@ -223,7 +225,7 @@ TEST(Report, ListsFilesThatCannotBeRead) {
         EXPECT_FALSE(error.empty());
     }
     EXPECT_EQ(files, "broken.h5 half.json metrics_odd.json ");
-    const std::string html = render_report(results, kAllData);
+    const std::string html = render_report(results, kAllData).html;
     EXPECT_TRUE(contains(html, "Files that could not be read"));
     EXPECT_TRUE(contains(html, "broken.h5"));
     EXPECT_TRUE(contains(html, "found &quot;much&quot;"));

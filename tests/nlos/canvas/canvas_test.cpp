@@ -231,5 +231,21 @@ TEST(AnimatedPng, HoldsEveryFrame) {
     }
 }
 
+TEST(PngFile, IsReadAsItWasWritten) {
+    const std::string png = small_drawing(PictureFormat::Png, "abc");
+    const cv::Mat expected = decoded_png(png);
+    const std::optional<Raster> found = decode_png(png);
+    ASSERT_TRUE(found);
+    ASSERT_EQ(cv::Size(found->columns, found->rows), expected.size());
+    for (int y = 0; y < found->rows; ++y) {
+        for (int x = 0; x < found->columns; ++x) {
+            const auto& [red, green, blue] = found->at(x, y);
+            ASSERT_EQ(cv::Vec3b(blue, green, red), expected.at<cv::Vec3b>(y, x)) << x << ", " << y;
+        }
+    }
+    EXPECT_FALSE(decode_png(png.substr(0, png.size() / 2)));
+    EXPECT_FALSE(decode_png("no picture"));
+}
+
 }  // namespace
 }  // namespace nlos
