@@ -14,7 +14,9 @@ import argparse
 import base64
 import io
 import json
+import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -96,6 +98,19 @@ class Pages:
         folder = self.results("bench")
         self.nlos("bench", "fit", "-o", folder, "--trials", 1, "--only", "direct_returns")
         return self.report(folder)
+
+    def reduced(self) -> Path:
+        """More than the page has room for: fewer and coarser views, thumbnails, a name that is no UTF-8."""
+        folder = self.results("reduced")
+        for name in (b"\xff", b"a", b"b", b"c", b"d", b"e"):
+            for file in ("capture.h5", "v_lct.h5"):
+                copy = os.path.join(os.fsencode(folder), name + b"_" + file.encode())
+                shutil.copyfile(self.folder / "demo" / file, copy)
+        page = self.report(folder, "--data-mb", "0.3")
+        text = page.read_text(encoding="utf-8")  # all of it, or UnicodeDecodeError
+        check("To keep this page within 0.3 MB" in text, "the page does not say that it is reduced")
+        check("6 captures, 6 reconstructions" in text, "results are not counted")
+        return page
 
     def list_of_points(self) -> Path:
         """Counts of a list of wall points in another group's kind of file, through nlos view."""
@@ -379,7 +394,7 @@ def main() -> int:
             expect_world_beside_wall(browser, pages.turned_wall())
             compare_screens(browser, demo, arguments.update, keep)
             for make in (pages.sequence, pages.doppler, pages.fit, pages.bench,
-                         pages.list_of_points, pages.hostile):
+                         pages.list_of_points, pages.reduced, pages.hostile):
                 page = make()
                 browser.open(page)
                 for animation in browser.views("animation"):
