@@ -10,6 +10,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace renderer {
 namespace {
@@ -44,8 +46,7 @@ FrameRenderer make_frame_renderer(const core::Scan& scan, const RenderSettings& 
     core::require(
         !settings.target_error || method.has_independent_frames,
         "render.target_error",
-        fmt::format("one for a sequence of frames by {}, which share their past, so that "
-                    "their spread tells no error",
+        fmt::format("one for a sequence of frames by {}, whose errors follow from their past",
                     method.name),
         "null, or the method " + estimators_that(&EstimatorTraits::has_independent_frames));
     const auto make = method_of(settings.method).make_frame_renderer;
@@ -94,8 +95,12 @@ RenderResult render_frames(std::shared_ptr<const Scene> scene,
         rendered.seconds += sequence.seconds;
         sequence = std::move(rendered);
         recorded.frames.push_back(sequence.capture.transient);
+        recorded.errors.push_back(
+            sequence.estimated_error.value_or(std::numeric_limits<double>::quiet_NaN()));
         if (i + 1 < frames.count && progress.should_stop()) sequence.interrupted = true;
     }
+    const auto is_unknown = [](double error) { return std::isnan(error); };
+    if (std::ranges::all_of(recorded.errors, is_unknown)) recorded.errors.clear();
     sequence.capture.sequence = std::move(recorded);
     if (const auto* zones = scan.as<core::SensorScan>()) {
         core::SensorScan last = *sequence.capture.scan.as<core::SensorScan>();

@@ -18,8 +18,10 @@ namespace {
 
 constexpr std::size_t kDomainsPerBlock = 64;
 
-// Estimates of one frame of a sequence, at most: each has random numbers of its own.
-constexpr std::uint64_t kMaxRepeats = 1 << 16;
+// Chains of frames of a sequence: each reuses its own past alone, so that their spread tells the
+// error of their mean, past included. Every frame of a chain has random numbers of its own.
+constexpr std::size_t kMinChains = 2;
+constexpr std::size_t kMaxChains = 256;
 
 int candidates_per_frame(const RestirSettings& settings) {
     return settings.walks + (has_shared_walks(settings.candidates) ? settings.shared_walks : 0);
@@ -35,6 +37,12 @@ RenderSettings with_fitting_frames(RenderSettings settings) {
     restir.walks = std::min(restir.walks, most);
     restir.shared_walks = most - restir.walks;
     return settings;
+}
+
+std::size_t num_chains_of(const RenderSettings& settings) {
+    const int per_frame = candidates_per_frame(settings.restir);
+    const auto wanted = static_cast<std::size_t>((settings.samples + per_frame - 1) / per_frame);
+    return std::clamp(wanted, kMinChains, kMaxChains);
 }
 
 void require_gate_to_shrink_to(const core::HistogramAxes& axes, const RenderSettings& settings) {
@@ -207,46 +215,59 @@ RenderResult render_restir(const RenderTask& task) {
 }
 
 FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSettings& settings) {
-    struct State {
-        RenderSettings settings;
+    struct Chain {
         RestirRenderer renderer;
         RestirFrame last;
     };
-    const auto state = std::make_shared<State>(State{settings, RestirRenderer(scan, settings), {}});
-    return [state](const Frame& frame, const core::Scan& frame_scan, const core::Progress&) {
-        auto& [settings_of_frames, renderer, last] = *state;
+    struct State {
+        RenderSettings settings;
+        std::size_t num_chains;  // where time does not tell
+        std::vector<Chain> chains;
+        std::shared_ptr<RestirScene> scene;
+    };
+    const RenderSettings fitting = with_fitting_frames(settings);
+    const auto state = std::make_shared<State>(State{fitting, num_chains_of(fitting), {}, {}});
+    return [state, &scan](const Frame& frame, const core::Scan& frame_scan, const core::Progress&) {
+        auto& [used, num_chains, chains, scene] = *state;
         const core::Stopwatch watch;
-        require_gate_to_shrink_to(frame.axes, settings_of_frames);
-        if (frame.index == 0) {
-            require_memory("restir", "reservoirs", renderer.bytes_needed(frame.axes));
+        require_gate_to_shrink_to(frame.axes, used);
+        if (scene == nullptr || scene->scene != frame.scene) {
+            scene = std::make_shared<RestirScene>(frame.scene, frame_scan, frame.axes, used);
         }
-        const RestirFrame* const previous = last.scene != nullptr ? &last : nullptr;
-        const auto scene = previous != nullptr && last.scene->scene == frame.scene
-                               ? last.scene
-                               : std::make_shared<RestirScene>(
-                                     frame.scene, frame_scan, frame.axes, settings_of_frames);
-        const std::uint64_t rays_before = renderer.counts().num_rays;
-        HistogramSums sums(frame_scan.num_pairs(), frame.axes, 1, settings_of_frames.variance);
-        // Time that is left goes into more estimates from the same past; the last one is kept.
-        RestirFrame rendered;
-        std::uint64_t repeats = 0;
-        do {
-            const std::uint64_t number =
-                static_cast<std::uint64_t>(frame.index) * kMaxRepeats + repeats;
-            rendered = renderer.render({scene, frame.axes, previous, number});
-            add_frame(rendered, settings_of_frames, sums);
-            ++repeats;
-        } while (settings_of_frames.seconds && watch.seconds() < *settings_of_frames.seconds &&
-                 repeats < kMaxRepeats);
-        last = std::move(rendered);
-        RenderResult result = result_of(sums,
-                                        static_cast<int>(repeats),
-                                        frame_scan,
-                                        frame.axes,
-                                        *scene,
-                                        settings_of_frames,
-                                        renderer.counts());
-        result.num_rays -= rays_before;
+        RestirCounts before;
+        for (const Chain& chain : chains) before += chain.renderer.counts();
+        // The first frame has as many chains as time lets it; the others must not have more, since
+        // a chain without a past is worth less.
+        const std::size_t most = frame.index > 0 ? chains.size()
+                                 : used.seconds  ? kMaxChains
+                                                 : num_chains;
+        HistogramSums sums(frame_scan.num_pairs(), frame.axes, 1, used.variance);
+        std::size_t done = 0;
+        while (done < most &&
+               (done < kMinChains || !used.seconds || watch.seconds() < *used.seconds)) {
+            if (done == chains.size()) {
+                chains.push_back({RestirRenderer(scan, used), {}});
+                require_memory("restir",
+                               "reservoirs",
+                               static_cast<double>(std::max(chains.size(), num_chains)) *
+                                   chains.back().renderer.bytes_needed(frame.axes));
+            }
+            auto& [renderer, last] = chains[done];
+            const auto number = static_cast<std::uint64_t>(frame.index) * kMaxChains + done;
+            last = renderer.render(
+                {scene, frame.axes, last.scene != nullptr ? &last : nullptr, number});
+            add_frame(last, used, sums);
+            ++done;
+        }
+        RestirCounts counts;
+        for (const Chain& chain : chains) counts += chain.renderer.counts();
+        RenderResult result =
+            result_of(sums, static_cast<int>(done), frame_scan, frame.axes, *scene, used, counts);
+        result.num_rays -= before.num_rays;
+        if (done > 1) {
+            result.estimated_error =
+                relative_error(sums.time.squared_norms(static_cast<int>(done), nullptr), {});
+        }
         result.seconds = watch.seconds();
         return result;
     };

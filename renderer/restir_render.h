@@ -15,6 +15,11 @@ RenderResult render_restir(const RenderTask& task);
 
 /// Renders the frames of a sequence, each of which also reuses the paths of the frame before it.
 ///
+/// A frame is the mean of two and more chains that share nothing: every chain reuses its own past
+/// alone, and from their spread follows the error of the mean, past included. `samples` counts the
+/// candidate paths of all chains per frame; with `seconds` there are as many chains as the first
+/// frame has time for.
+///
 /// scan   must outlive what is returned
 FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSettings& settings);
 

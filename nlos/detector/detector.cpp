@@ -250,6 +250,7 @@ core::Capture detect(const core::Capture& capture, const DetectorSettings& setti
     }
     result.sequence = capture.sequence;
     result.sequence->frames.clear();
+    result.sequence->errors.clear();  // of light, not of what is recorded of it
     for (const core::Transient& light : capture.sequence->frames) {
         result.sequence->frames.push_back(record_frame(result.sequence->frames.size(), light));
     }

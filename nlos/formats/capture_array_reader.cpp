@@ -159,6 +159,9 @@ void read_optional_arrays(const ArrayReader& file, const std::string& prefix, Ca
             capture.sequence.emplace(core::FrameSequence{read_stack(file, name("frames"), capture)})
                 .frames.size();
         ranges.insert(ranges.begin(), count);
+        if (file.has(name("frame_error"))) {
+            capture.sequence->errors = file.read_doubles(name("frame_error"), {count});
+        }
         if (count > 0 && file.has(name("frames_observed_bins"))) {
             capture.sequence->observed =
                 read_observed_bins(file, name("frames_observed_bins"), ranges, count);

@@ -153,6 +153,12 @@ std::vector<std::string> describe_capture(const core::Capture& capture) {
                         capture.sequence->frame_s,
                         capture.sequence->gate_step_m));
     }
+    if (capture.sequence && !capture.sequence->errors.empty()) {
+        const std::vector<double>& errors = capture.sequence->errors;
+        lines.push_back(fmt::format("errors of frames: {:.2g} of the first, {:.2g} of the last",
+                                    errors.front(),
+                                    errors.back()));
+    }
     if (capture.sequence && !capture.sequence->observed.empty()) {
         lines.push_back(describe_observed_frames(capture));
     }

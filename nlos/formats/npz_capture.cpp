@@ -28,6 +28,7 @@ using core::WallPoints;
 //   observed_bins                            int32 (2, as H without T): first observed bin and the
 //                                            one after the last, where some were not observed
 //   frames, gate_step_m, frame_s             float32 (F, as H) and float64 (), of a sequence
+//   frame_error                              float64 (F), relative L2 of each frame, NaN: not known
 //   frames_observed_bins                     int32 (F, as observed_bins), where frames differ
 
 void write_points(NpzWriter& file,
@@ -125,6 +126,9 @@ std::vector<std::string> write_npz(const std::string& path,
         write_stack(file, "frames", shape, capture.sequence->frames);
         file.write_real("gate_step_m", capture.sequence->gate_step_m);
         file.write_real("frame_s", capture.sequence->frame_s);
+        if (const auto& errors = capture.sequence->errors; !errors.empty()) {
+            file.write("frame_error", {errors.size()}, std::span<const double>(errors));
+        }
         if (!capture.sequence->observed.empty()) {
             Shape bins = shape;
             bins[0] = 2;

@@ -118,6 +118,9 @@ bool write_own_group(Hdf5Writer& file,
         write_stack(file, "nlos/frames", h_shape, capture.sequence->frames);
         file.write_attribute("nlos/frames", kGateStep, {1}, {{capture.sequence->gate_step_m}});
         file.write_attribute("nlos/frames", kFrameTime, {1}, {{capture.sequence->frame_s}});
+        if (const auto& errors = capture.sequence->errors; !errors.empty()) {
+            file.write("nlos/frame_error", {errors.size()}, errors);
+        }
         if (!capture.sequence->observed.empty()) {
             Shape shape = h_shape;
             shape[0] = 2;

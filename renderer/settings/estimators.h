@@ -24,7 +24,7 @@ struct EstimatorTraits {
     bool renders_images = true;
     bool renders_sensors = true;
     bool renders_all_surfaces = true;    ///< also narrow lobes
-    bool has_independent_frames = true;  ///< of a sequence: their spread tells their error
+    bool has_independent_frames = true;  ///< of a sequence: each may reach any error
     bool integrates = false;             ///< what it can, by elements whose size has a tolerance
     bool is_deterministic = false;       ///< no seed nor number of samples changes the result
     bool excludes_surfaces = false;      ///< from connections, as the settings `exclude*` say

@@ -35,6 +35,16 @@ void validate_sequence(const Capture& capture, const std::string& where) {
     require(!sequence.frames.empty(), where + ": frames", "none", "one and more");
     check_range(sequence.frame_s, {.low = 0.0, .with_low = true}, where + ": frame_s");
     check_range(sequence.gate_step_m, {}, where + ": gate_step_m");
+    require(sequence.errors.empty() || sequence.errors.size() == sequence.frames.size(),
+            where + ": errors of frames",
+            fmt::format("{} values", sequence.errors.size()),
+            fmt::format("one for each of {} frames", sequence.frames.size()));
+    for (const double error : sequence.errors) {
+        require(std::isnan(error) || (error >= 0.0 && std::isfinite(error)),
+                where + ": errors of frames",
+                fmt::format("{}", error),
+                "0 or more, or NaN");
+    }
     for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
         validate_histograms(capture,
                             sequence.frames[i],

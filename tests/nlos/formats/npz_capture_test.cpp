@@ -47,6 +47,7 @@ Capture capture_with_extras(ScanPattern pattern) {
     capture.by_order = {capture.transient, capture.transient};
     for (float& value : capture.by_order[1].values()) value *= 0.37F;
     capture.sequence = core::FrameSequence{{capture.by_order[1], capture.transient}, 0.02, 0.04};
+    capture.sequence->errors = {0.25, 0.125};
     capture.scene_info["text"] = "\xc3\xbc \xe2\x82\xac \xf0\x9f\x98\x80";
     return capture;
 }

@@ -69,11 +69,15 @@ TEST(YtalCapture, FramesSurviveTheRoundTrip) {
          {example_capture(ScanPattern::Exhaustive), test_support::example_image()}) {
         core::FrameSequence sequence{{capture.transient, capture.transient}, 0.02, 0.04};
         for (float& value : sequence.frames[0].values()) value *= -3.0F;
+        sequence.errors = {0.25, std::numeric_limits<double>::quiet_NaN()};
         capture.sequence = sequence;
         const Capture read = CaptureFile(capture).read();
         ASSERT_TRUE(read.sequence.has_value());
         EXPECT_EQ(read.sequence->gate_step_m, 0.02);
         EXPECT_EQ(read.sequence->frame_s, 0.04);
+        ASSERT_EQ(read.sequence->errors.size(), 2U);
+        EXPECT_EQ(read.sequence->errors[0], 0.25);
+        EXPECT_TRUE(std::isnan(read.sequence->errors[1]));
         ASSERT_EQ(read.sequence->frames.size(), 2U);
         for (std::size_t i = 0; i < 2; ++i) {
             EXPECT_TRUE(

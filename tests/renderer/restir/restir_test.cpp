@@ -297,6 +297,56 @@ TEST_P(RestirFrames, EveryFrameAgreesWithPathTracing) {
     }
 }
 
+// The mean square that is reported over the mean square of what estimates differ by.
+TEST_P(RestirFrames, EveryFrameReportsItsError) {
+    constexpr int kSeeds = 48;
+    const bool is_image = GetParam();
+    const core::Scan scan = is_image ? close_up() : wall_scan(core::ScanPattern::Confocal);
+    for (const auto& [step, frame_s] :
+         std::vector<std::pair<double, double>>{{0.02, 0.0}, {0.0, 0.0}, {0.01, 0.1}}) {
+        renderer::SceneDescription description;
+        description.time_axis = {is_image ? core::TimeAxis{2.45, 0.5, 1} : kGate};
+        description.frames = {5, step, frame_s};
+        description.render = restir_settings(Estimator::Restir, 256, is_image ? 3 : 4);
+        const auto scene =
+            std::make_shared<const renderer::Scene>(geometry(false), scan, description.relay_wall);
+        std::vector<core::FrameSequence> sequences;
+        for (int seed = 0; seed < kSeeds; ++seed) {
+            description.render.seed = test_support::seed_of("RestirFrames.Errors") + seed;
+            sequences.push_back(
+                *renderer::render_frames(scene,
+                                         scan,
+                                         description,
+                                         renderer::make_frame_renderer(scan, description.render),
+                                         {})
+                     .capture.sequence);
+        }
+        for (std::size_t frame = 0; frame < 5; ++frame) {
+            const std::size_t size = sequences[0].frames[frame].values().size();
+            std::vector<double> sum(size), squares(size);
+            double reported = 0.0;
+            for (const core::FrameSequence& sequence : sequences) {
+                const auto values = sequence.frames[frame].values();
+                double norm = 0.0;
+                for (std::size_t i = 0; i < size; ++i) {
+                    sum[i] += double{values[i]};
+                    squares[i] += double{values[i]} * double{values[i]};
+                    norm += double{values[i]} * double{values[i]};
+                }
+                ASSERT_EQ(sequence.errors.size(), 5U);
+                reported += std::pow(sequence.errors[frame], 2) * norm / kSeeds;
+            }
+            double true_square = 0.0;
+            for (std::size_t i = 0; i < size; ++i) {
+                true_square += (squares[i] - sum[i] * sum[i] / kSeeds) / (kSeeds - 1);
+            }
+            const double ratio = std::sqrt(true_square / reported);
+            EXPECT_GT(ratio, 0.8) << step << ' ' << frame_s << ' ' << frame;
+            EXPECT_LT(ratio, 1.25) << step << ' ' << frame_s << ' ' << frame;
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Measurements, RestirFrames, testing::Bool(), [](const auto& test) {
     return std::string(test.param ? "image" : "scan");
 });
