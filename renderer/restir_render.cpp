@@ -24,7 +24,8 @@ constexpr std::size_t kMinChains = 2;
 constexpr std::size_t kMaxChains = 256;
 
 int candidates_per_frame(const RestirSettings& settings) {
-    return settings.walks + (has_shared_walks(settings.candidates) ? settings.shared_walks : 0);
+    return settings.walks + (has_shared_walks(settings.candidates) ? settings.shared_walks : 0) +
+           (has_connections(settings.candidates) ? settings.connections : 0);
 }
 
 // Settings whose frames take no more candidates than are asked for in all: by at least two frames,
@@ -35,7 +36,10 @@ RenderSettings with_fitting_frames(RenderSettings settings) {
     const bool is_open_ended = settings.seconds || settings.target_error;
     if (is_open_ended || candidates_per_frame(restir) <= most) return settings;
     restir.walks = std::min(restir.walks, most);
-    restir.shared_walks = most - restir.walks;
+    const double left = static_cast<double>(most - restir.walks) /
+                        std::max(1, candidates_per_frame(restir) - restir.walks);
+    restir.shared_walks = static_cast<int>(left * restir.shared_walks);
+    restir.connections = static_cast<int>(left * restir.connections);
     return settings;
 }
 

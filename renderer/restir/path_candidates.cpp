@@ -2,6 +2,7 @@
 #include "renderer/restir/path_candidates.h"
 
 #include "renderer/core/sampling.h"
+#include "renderer/ellipsoidal/hierarchy_cut.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,9 @@ using core::Vec3;
 // Shared walks per frame, in multiples of what one pair tries: neighbouring pairs then rarely try
 // the same walks, so that their noise is hardly correlated.
 constexpr int kStretchesOfSharedWalks = 8;
+
+// Of a pair's cut through the hierarchy, at least: enough to tell facets apart.
+constexpr std::size_t kMinEntriesOfCut = 32;
 
 }  // namespace
 
@@ -35,6 +39,7 @@ class PathCandidates::Job {
           rng_(rng),
           offer_(offer) {}
 
+    void connect_from_wall();
     void walk_from_sensor();
     void try_shared();
     std::uint64_t num_rays() const { return num_rays_; }
@@ -49,6 +54,7 @@ class PathCandidates::Job {
     };
     Start start_of_connection(const PathVertex* walked);
     void connect_by_ellipsoid(const PathVertex* walked, ReusablePath path);
+    void offer_connection(const SurfacePoint& point, ReusablePath path);
     bool draw_first(PathVertex& vertex);
     std::optional<RandomWalk::Step> first_step(const SurfacePoint& next) const;
     std::optional<PathValue> value_within(const ReusablePath& path) const;
@@ -74,6 +80,7 @@ class PathCandidates::Job {
     core::Rng& rng_;
     const Offer& offer_;
     std::uint64_t num_rays_ = 0;
+    std::optional<HierarchyCut> cut_;  ///< of the connections from a wall point
 };
 
 PathCandidates::PathCandidates(const Scene& scene,
@@ -110,6 +117,7 @@ std::uint64_t PathCandidates::generate(const Request& request,
                                        const Offer& offer) const {
     if (request.domain.is_dark || max_vertices_ < 1) return 0;
     Job job(*this, request, rng, offer);
+    if (request.effort.connections > 0 && !request.domain.seen) job.connect_from_wall();
     for (int i = 0; i < request.effort.walks; ++i) job.walk_from_sensor();
     if (request.effort.shared_walks > 0) job.try_shared();
     return job.num_rays();
@@ -181,7 +189,7 @@ bool PathCandidates::Job::is_blocked(const ReusablePath& path, int segment) {
 void PathCandidates::Job::walk_from_sensor() {
     ReusablePath path;
     PathVertex vertex;
-    connect_by_ellipsoid(nullptr, path);
+    if (!cut_) connect_by_ellipsoid(nullptr, path);
     if (!draw_first(vertex)) return;
     while (true) {
         path.append(vertex.point);
@@ -215,8 +223,28 @@ void PathCandidates::Job::connect_by_ellipsoid(const PathVertex* walked, Reusabl
     if (!connections || path.num_vertices == max_vertices_) return;
     const Start start = start_of_connection(walked);
     const auto draw = connections->sample(start.ends, start.lengths, rng_, start.lobe);
-    if (!draw) return;
-    path.append(draw->point);
+    if (draw) offer_connection(draw->point, path);
+}
+
+void PathCandidates::Job::connect_from_wall() {
+    const ConnectionTechnique& connections = *candidates_.connections_;
+    const int count = request_.effort.connections;
+    const Start start = start_of_connection(nullptr);
+    cut_.emplace(connections.hierarchy());
+    cut_->rebuild(
+        start.ends, start.lengths, std::max(kMinEntriesOfCut, static_cast<std::size_t>(count)));
+    if (cut_->empty()) return;
+    std::size_t hint = 0;
+    for (int i = 0; i < count; ++i) {
+        const double u = (i + rng_.uniform()) / count;
+        const auto draw = connections.sample(*cut_, u, hint, rng_);
+        if (draw) offer_connection(draw->point, {});
+    }
+}
+
+// Offers a path that a connection ends.
+void PathCandidates::Job::offer_connection(const SurfacePoint& point, ReusablePath path) {
+    path.append(point);
     const auto value = value_within(path);
     if (!value || is_blocked(path, path.num_vertices - 1)) return;
     if (!is_seen_back(path) && is_blocked(path, path.num_vertices)) return;
@@ -253,6 +281,9 @@ double PathCandidates::Job::density(const ReusablePath& path) {
     const Effort& effort = request_.effort;
     double total = 0.0;
     if (effort.walks > 0) total += effort.walks * density_of_walks(path);
+    if (cut_ && !cut_->empty() && path.num_vertices == 1) {
+        total += effort.connections * candidates_.connections_->pdf_area(*cut_, path.last());
+    }
     if (effort.shared_walks > 0) {
         total += effort.shared_walks * candidates_.light_vertices_.pdf_area(path);
     }
@@ -265,7 +296,8 @@ double PathCandidates::Job::density_of_walks(const ReusablePath& path) {
     double ellipsoidal = 0.0;  // of the last one, by the other technique
     PathVertex vertex;
     for (int i = 0; i < path.num_vertices; ++i) {
-        if (candidates_.connections_ && i + 1 == path.num_vertices) {
+        const bool is_drawn_from_cut = cut_ && i == 0;
+        if (candidates_.connections_ && !is_drawn_from_cut && i + 1 == path.num_vertices) {
             const Start start = start_of_connection(i == 0 ? nullptr : &vertex);
             ellipsoidal = walked * candidates_.connections_->pdf_area(
                                        start.ends, start.lengths, path.last(), start.lobe);

@@ -14,7 +14,9 @@ namespace renderer {
 ///
 /// Techniques are weighted by the balance heuristic on the paths' densities: walks from the sensor
 /// and, depending on the settings, an ellipsoidal connection from each vertex to the light, or a
-/// stretch of shared walks from the light (source [Veach1997], [Pediredla2019]).
+/// stretch of shared walks from the light (source [Veach1997], [Pediredla2019]). From a wall point
+/// there are many connections, which share one descent of the hierarchy and are spread evenly over
+/// its facets: their noise falls faster than their number grows.
 class PathCandidates {
  public:
     /// Receives an unoccluded path whose length lies within the requested interval.
@@ -27,6 +29,7 @@ class PathCandidates {
     struct Effort {
         int walks = 1;
         int shared_walks = 0;
+        int connections = 0;  ///< from a wall point to its light; pixels have one per walk
     };
 
     /// Where to draw: a pair, and path lengths within [opl_begin_m, opl_end_m).

@@ -41,6 +41,10 @@ PathCandidates::Effort effort_of(const RestirSettings& settings, double fraction
     if (has_shared_walks(settings.candidates)) {
         effort.shared_walks = static_cast<int>(std::lround(fraction * settings.shared_walks));
     }
+    if (has_connections(settings.candidates)) {
+        effort.connections =
+            std::max(1, static_cast<int>(std::lround(fraction * settings.connections)));
+    }
     return effort;
 }
 

@@ -26,6 +26,7 @@ struct RestirSettings {
     Candidates candidates = Candidates::Shared;
     int walks = 1;
     int shared_walks = 512;
+    int connections = 256;
     Reuse reuse = Reuse::PathLength;
     Chart chart = Chart::Adaptive;
     Gauge gauge = Gauge::Average;
@@ -51,6 +52,9 @@ void for_each_field(RestirSettings& s, Visitor&& visit) {
     visit("shared_walks",
           s.shared_walks,
           core::at_least(1, "shared, all: walks from the light tried, per pair and frame"));
+    visit("connections",
+          s.connections,
+          core::at_least(1, "ellipsoidal, all: connections from a wall point, per pair and frame"));
     visit("reuse", s.reuse, "how paths are reused");
     visit("chart", s.chart, "coordinates in which a vertex moves");
     visit("gauge", s.gauge, "what fixes the second coordinate");
