@@ -48,8 +48,10 @@ void declare_track(Command& command) {
                     "(.json)")
         ->required();
     add_output_option(command, request.output, "Track to write (.json); may be left out with -");
-    add_file_option(
-        command, "--csv", request.csv, "Table to write (.csv): a line per frame and target, places in the world");
+    add_file_option(command,
+                    "--csv",
+                    request.csv,
+                    "Table to write (.csv): a line per frame and target, places in the world");
     add_file_option(command,
                     "--picture",
                     request.picture,
