@@ -29,9 +29,16 @@ int candidates_per_frame(const RestirSettings& settings) {
 }
 
 // Settings whose frames take no more candidates than are asked for in all: by at least two frames,
-// whose difference tells the error, unless there is but one candidate.
-RenderSettings with_fitting_frames(RenderSettings settings) {
+// whose difference tells the error, unless there is but one candidate. In one gate of a wall scan,
+// where few walks are of the wanted length, they are connections.
+RenderSettings with_fitting_frames(RenderSettings settings,
+                                   const core::Scan& scan,
+                                   const core::HistogramAxes& axes) {
     RestirSettings& restir = settings.restir;
+    if (!restir.candidates) {
+        const bool is_gate = scan.has_wall() && axes.time.num_bins == 1 && !axes.velocity;
+        restir.candidates = is_gate ? Candidates::Ellipsoidal : Candidates::Shared;
+    }
     const int most = std::max(1, settings.samples / 2);
     const bool is_open_ended = settings.seconds || settings.target_error;
     if (is_open_ended || candidates_per_frame(restir) <= most) return settings;
@@ -188,7 +195,7 @@ RenderResult render_restir(const RenderTask& task) {
     const core::HistogramAxes& axes = task.axes;
     const core::Stopwatch watch;
     require_gate_to_shrink_to(axes, task.settings);
-    const RenderSettings settings = with_fitting_frames(task.settings);
+    const RenderSettings settings = with_fitting_frames(task.settings, scan, axes);
     RestirRenderer renderer(scan, settings);
     require_memory("restir", "reservoirs", renderer.bytes_needed(axes));
     const auto restir_scene = std::make_shared<RestirScene>(
@@ -199,7 +206,7 @@ RenderResult render_restir(const RenderTask& task) {
     int done = 0;
     const auto render_frame = [&] {
         const auto number = static_cast<std::uint64_t>(done);
-        add_frame(renderer.render({restir_scene, axes, nullptr, number}), settings, sums);
+        add_frame(renderer.render({restir_scene, axes, nullptr, nullptr, number}), settings, sums);
         ++done;
         const double fraction = rule.fraction_done(done, watch.seconds(), sums.time);
         task.progress.update(fraction, fmt::format("{} frames", done));
@@ -229,12 +236,15 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
         std::vector<Chain> chains;
         std::shared_ptr<RestirScene> scene;
     };
-    const RenderSettings fitting = with_fitting_frames(settings);
-    const auto state = std::make_shared<State>(State{fitting, num_chains_of(fitting), {}, {}});
+    const auto state = std::make_shared<State>(State{settings, 0, {}, {}});
     return [state, &scan](const Frame& frame, const core::Scan& frame_scan, const core::Progress&) {
         auto& [used, num_chains, chains, scene] = *state;
         const core::Stopwatch watch;
         require_gate_to_shrink_to(frame.axes, used);
+        if (frame.index == 0) {
+            used = with_fitting_frames(used, scan, frame.axes);
+            num_chains = num_chains_of(used);
+        }
         if (scene == nullptr || scene->scene != frame.scene) {
             scene = std::make_shared<RestirScene>(frame.scene, frame_scan, frame.axes, used);
         }
@@ -258,11 +268,15 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
             }
             auto& [renderer, last] = chains[done];
             const auto number = static_cast<std::uint64_t>(frame.index) * kMaxChains + done;
-            last = renderer.render(
-                {scene, frame.axes, last.scene != nullptr ? &last : nullptr, number});
+            last = renderer.render({scene,
+                                    frame.axes,
+                                    last.scene != nullptr ? &last : nullptr,
+                                    done > 0 ? &chains[0].last : nullptr,
+                                    number});
             add_frame(last, used, sums);
             ++done;
         }
+        chains[0].renderer.learn_from(chains[1].renderer);  // which had a twin
         RestirCounts counts;
         for (const Chain& chain : chains) counts += chain.renderer.counts();
         RenderResult result =

@@ -198,6 +198,13 @@ bool disagrees(const BendOfFirstLight& bend, const CaptureCorrection& correction
            std::abs(std::sqrt(bend.k) * correction.length_factor - 1.0) > kFactorTolerance;
 }
 
+/// Whether first light would bend by more than any path length can if a correction held.
+bool is_impossible(const BendOfFirstLight& bend, const CaptureCorrection& correction) {
+    const double stretch = correction.length_factor / correction.wall_factor;
+    const double least = bend.k - kCheckSignificance * bend.uncertainty;
+    return stretch > 1.0 && stretch * stretch * least > kStrongestBend;
+}
+
 /// What mistakes in describing a capture would explain it, unless first light knows better.
 std::optional<std::string> mistakes(const core::Capture& capture,
                                     const std::vector<double>& ambient,
@@ -207,6 +214,7 @@ std::optional<std::string> mistakes(const core::Capture& capture,
     std::string text;
     for (const CaptureCorrection& correction : recognise_mistakes(*evidence)) {
         if (bend && bent_onset(capture, bend) && disagrees(*bend, correction)) continue;
+        if (bend && is_impossible(*bend, correction)) continue;
         text += (text.empty() ? "" : "; or ") + describe_mistake(capture, correction);
     }
     if (text.empty()) return std::nullopt;

@@ -143,6 +143,7 @@ struct RestirFrame {
     ReservoirBins bins;                 ///< of every pair
     std::vector<PathDomain> domains;    ///< per pair, of the frame's own candidates
     PackedReservoirs reservoirs{0, 0};  ///< [pair][bin]
+    std::vector<float> candidates{};    ///< likewise: what the frame's own candidates estimate
 };
 
 /// The domain of a reservoir: a pair and a gate, in a scene.

@@ -61,6 +61,7 @@ struct RestirRenderer::Worker {
     std::vector<std::size_t> neighbours{};
     std::array<ReuseStatistics, 2> statistics{};  // of even and odd pairs
     std::array<double, 2> shift_noise{};          // in earlier frames, for even and odd pairs
+    double squared_weights = 0.0;                 // of the pair's candidates
 
     // Draws paths of the pair within a gate and offers them to the builder of their bin.
     template <class BuilderOf>
@@ -76,7 +77,7 @@ struct RestirRenderer::Worker {
                 ReusablePath placed = path;
                 placed.pixel_u = domain.pixel_u;
                 const double weight = target / density;
-                statistics[pair % 2].candidate_variance += weight * weight;
+                squared_weights += weight * weight;
                 builder->add(placed, target, weight, rng.uniform());
             });
     }
@@ -164,7 +165,7 @@ double RestirRenderer::bytes_needed(const core::HistogramAxes& axes) const {
     const double reservoirs = static_cast<double>(scan_.num_pairs()) *
                               static_cast<double>(ReservoirBins(axes, settings_.gate).count());
     // The frame's, those of a round of reuse, and the previous frame's.
-    return 3.0 * reservoirs * PackedReservoirs::bytes_per_reservoir(max_vertices_);
+    return reservoirs * (3.0 * PackedReservoirs::bytes_per_reservoir(max_vertices_) + 4.0);
 }
 
 void RestirRenderer::for_each_pair(const FrameInput& input,
@@ -203,6 +204,7 @@ RestirFrame RestirRenderer::render(const FrameInput& input) {
     frame.bins = ReservoirBins(input.axes, settings_.gate);
     frame.domains.resize(scan_.num_pairs());
     frame.reservoirs = PackedReservoirs(scan_.num_pairs() * frame.bins.count(), max_vertices_);
+    frame.candidates.resize(frame.reservoirs.size());
     find_domains(input, frame);
     counts_.num_rays += input.scene->candidates.prepare(settings_.seed, input.number);
     generate_candidates(input, frame);
@@ -238,6 +240,11 @@ void RestirRenderer::end_statistics_of_frame(bool had_spatial_reuse) {
     }
 }
 
+void RestirRenderer::learn_from(const RestirRenderer& other) {
+    statistics_ = other.statistics_;
+    gain_of_spatial_reuse_ = other.gain_of_spatial_reuse_;
+}
+
 void RestirRenderer::find_domains(const FrameInput& input, RestirFrame& frame) const {
     const SensorPairs& sensor_pairs = input.scene->sensor_pairs;
     core::parallel_for(frame.domains.size(), [&](std::size_t pair) {
@@ -256,6 +263,7 @@ void RestirRenderer::generate_candidates(const FrameInput& input, RestirFrame& f
         auto& builders = worker.builders;
         std::fill(builders.begin(), builders.end(), ReservoirBuilder<ReusablePath>());
         const double fraction = 1.0 - settings_.restir.shrink_fraction;
+        worker.squared_weights = 0.0;
         worker.draw(frame.bins.lengths(), fraction, [&](const OpticalPath& optical_path) {
             const auto bin = frame.bins.bin_of(optical_path);
             return bin ? &builders[*bin] : nullptr;
@@ -264,8 +272,18 @@ void RestirRenderer::generate_candidates(const FrameInput& input, RestirFrame& f
             PathReservoir fresh = builders[bin].finish(fraction * kConfidenceOfFrame);
             if (fraction < 1.0) fresh = worker.sample_wide_gate(fresh);
             const double estimate = fresh.estimate();
-            worker.statistics[worker.pair % 2].candidates += estimate * estimate;
-            frame.reservoirs.store(worker.pair * num_bins + bin, fresh);
+            ReuseStatistics& sums = worker.statistics[worker.pair % 2];
+            sums.candidates += estimate * estimate;
+            const std::size_t index = worker.pair * num_bins + bin;
+            frame.candidates[index] = static_cast<float>(estimate);
+            if (input.twin != nullptr) {
+                const double difference = estimate - double{input.twin->candidates[index]};
+                sums.candidate_variance += 0.5 * difference * difference;
+            }
+            frame.reservoirs.store(index, fresh);
+        }
+        if (input.twin == nullptr) {
+            worker.statistics[worker.pair % 2].candidate_variance += worker.squared_weights;
         }
     });
 }

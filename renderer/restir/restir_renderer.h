@@ -33,10 +33,16 @@ class RestirRenderer {
         std::shared_ptr<RestirScene> scene;
         core::HistogramAxes axes;
         const RestirFrame* previous = nullptr;  ///< whose reservoirs to reuse; null: none
-        std::uint64_t number = 0;               ///< unique among the frames of one seed
+        /// The same frame with other random numbers, from which candidates' noise is told; null:
+        /// their weights tell it, which overestimates that of stratified ones.
+        const RestirFrame* twin = nullptr;
+        std::uint64_t number = 0;  ///< unique among the frames of one seed
     };
     /// Renders a frame. Its estimates are those of its reservoirs.
     RestirFrame render(const FrameInput& input);
+
+    /// Takes over what another renderer has measured of the noise of frames and shifts.
+    void learn_from(const RestirRenderer& other);
 
     const RestirCounts& counts() const { return counts_; }
 

@@ -9,6 +9,9 @@ namespace {
 // What is left of a difference of two noisy sums, at least.
 constexpr double kLeastPart = 1e-3;
 
+// Relative variance of a frame, at least.
+constexpr double kLeastVariance = 1e-6;
+
 }  // namespace
 
 void ReuseStatistics::add_shift(const PathReservoir& fresh_one,
@@ -42,7 +45,7 @@ double ReuseStatistics::shift_noise() const {
     constexpr double kUnknown = 1.0;
     const double light = squared_light();
     if (!(light > 0.0) || !(shifted > 0.0)) return kUnknown;
-    const double variance = std::max(fresh / light - 1.0, kLeastPart);
+    const double variance = std::max(fresh / light - 1.0, kLeastVariance);
     const double square = shifted / light / (1.0 + variance * shifted_per_frame / shifted);
     const double mean = std::min(1.0, covered / light);
     return std::max(0.0, square - mean * mean) / variance;

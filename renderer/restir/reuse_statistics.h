@@ -19,7 +19,7 @@ namespace renderer {
 /// pairs.
 struct ReuseStatistics {
     double candidates = 0.0;          ///< X^2
-    double candidate_variance = 0.0;  ///< squared resampling weights, which estimate v mu^2
+    double candidate_variance = 0.0;  ///< estimates of v mu^2, see RestirRenderer::FrameInput
     double fresh = 0.0;               ///< X^2 after spatial reuse
     double covered = 0.0;             ///< X Z
     double shifted = 0.0;             ///< Z^2

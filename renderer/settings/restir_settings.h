@@ -3,6 +3,8 @@
 
 #include "renderer/core/settings/settings.h"
 
+#include <optional>
+
 namespace renderer {
 
 /// How a reused path is made to fit its new place: by its path length, without it, or not at all.
@@ -23,7 +25,7 @@ enum class Candidates {
 
 /// Reservoir reuse; only the estimator `restir` uses these.
 struct RestirSettings {
-    Candidates candidates = Candidates::Shared;
+    std::optional<Candidates> candidates;
     int walks = 1;
     int shared_walks = 512;
     int connections = 256;
@@ -38,16 +40,18 @@ struct RestirSettings {
     bool reverse_check = true;
 };
 
-inline bool has_connections(Candidates kind) {
+inline bool has_connections(std::optional<Candidates> kind) {
     return kind == Candidates::Ellipsoidal || kind == Candidates::All;
 }
-inline bool has_shared_walks(Candidates kind) {
-    return kind == Candidates::Shared || kind == Candidates::All;
+inline bool has_shared_walks(std::optional<Candidates> kind) {
+    return !kind || kind == Candidates::Shared || kind == Candidates::All;
 }
 
 template <class Visitor>
 void for_each_field(RestirSettings& s, Visitor&& visit) {
-    visit("candidates", s.candidates, "what reservoirs choose from");
+    visit("candidates",
+          s.candidates,
+          "what reservoirs choose from; null: connections in one gate of a wall scan, else shared");
     visit("walks", s.walks, core::at_least(1, "walks from the sensor, per pair and frame"));
     visit("shared_walks",
           s.shared_walks,
