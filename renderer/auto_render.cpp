@@ -75,20 +75,6 @@ RenderSettings settings_of_paths(RenderSettings settings, double seconds_of_inte
     return settings;
 }
 
-// Whether so little light falls within the time axis that paths had better be made to fit it: walks
-// waste what is outside, connections take several times as long (renderer/RESULTS.md, gates).
-// Walks from pixels meet light paths that all of them share, which serves wider gates, too.
-bool is_narrow(const RenderTask& task) {
-    constexpr double kNarrowForScans = 0.15;
-    constexpr double kNarrowForImages = 0.02;
-    if (task.axes.velocity) return false;
-    const auto range = find_light_range(task.scene, task.scan, task.settings);
-    const core::TimeAxis& axis = task.axes.time;
-    return range && !range->is_dark() &&
-           range->fraction_between(axis.opl_start_m, axis.opl_end_m()) <
-               (task.scan.has_wall() ? kNarrowForScans : kNarrowForImages);
-}
-
 std::vector<OrderSource> sources_of_third_bounces(const Surfaces& surfaces, const Plan& plan) {
     if (!surfaces.narrow_lobes) return {{3, 3, Estimator::ThirdBounce, "all"}};
     return {{3, 3, Estimator::ThirdBounce, "all but narrow glossy lobes and dielectrics"},
@@ -149,7 +135,8 @@ RenderResult render_auto(const RenderTask& whole) {
     plan.traces = surfaces.narrow_lobes || task.settings.max_bounces > 3;
     plan.averages = plan.traces && may_average(task.settings, surfaces);
     const bool integrates = can_integrate(task);
-    plan.connects = (plan.traces || !integrates) && is_narrow(task);
+    plan.connects =
+        (plan.traces || !integrates) && is_narrow(task.scene, task.scan, task.axes, task.settings);
     RenderResult result =
         integrates ? integrate_and_trace(task, plan)
                    : (plan.connects ? trace_connections : trace_paths)(

@@ -36,6 +36,15 @@ std::optional<LightRange> find_light_range(const Scene& scene,
                                            const core::Scan& scan,
                                            const RenderSettings& settings);
 
+/// Whether so little of the light lies within an axis without velocities that paths had better be
+/// made to fit it: walks waste what is outside, connections take several times as long
+/// (renderer/RESULTS.md, gates). Less than 15 % of a scan's light is little, and 2 % of an image's:
+/// walks from pixels meet light paths that all of them share.
+bool is_narrow(const Scene& scene,
+               const core::Scan& scan,
+               const core::HistogramAxes& axes,
+               const RenderSettings& settings);
+
 /// The axis that `"time_axis": "auto"` asks for: all path lengths that are possible, in bins half
 /// as fine as lets the farthest points of the scan tell apart what is a pitch away from each other
 /// along the wall (source [OToole2018], resolution limits), but about 64 to 4096 of them. Were it

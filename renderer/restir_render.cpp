@@ -5,6 +5,7 @@
 #include "renderer/core/stopwatch.h"
 #include "renderer/core/system/parallel.h"
 #include "renderer/ellipsoidal_render.h"
+#include "renderer/light_range.h"
 #include "renderer/restir/restir_renderer.h"
 
 #include <fmt/core.h>
@@ -29,15 +30,16 @@ int candidates_per_frame(const RestirSettings& settings) {
 }
 
 // Settings whose frames take no more candidates than are asked for in all: by at least two frames,
-// whose difference tells the error, unless there is but one candidate. In one gate of a wall scan,
+// whose difference tells the error, unless there is but one candidate. On scans of a narrow axis,
 // where few walks are of the wanted length, they are connections.
 RenderSettings with_fitting_frames(RenderSettings settings,
+                                   const Scene& scene,
                                    const core::Scan& scan,
                                    const core::HistogramAxes& axes) {
     RestirSettings& restir = settings.restir;
     if (!restir.candidates) {
-        const bool is_gate = scan.has_wall() && axes.time.num_bins == 1 && !axes.velocity;
-        restir.candidates = is_gate ? Candidates::Ellipsoidal : Candidates::Shared;
+        const bool connects = scan.has_wall() && is_narrow(scene, scan, axes, settings);
+        restir.candidates = connects ? Candidates::Ellipsoidal : Candidates::Shared;
     }
     const int most = std::max(1, settings.samples / 2);
     const bool is_open_ended = settings.seconds || settings.target_error;
@@ -195,7 +197,7 @@ RenderResult render_restir(const RenderTask& task) {
     const core::HistogramAxes& axes = task.axes;
     const core::Stopwatch watch;
     require_gate_to_shrink_to(axes, task.settings);
-    const RenderSettings settings = with_fitting_frames(task.settings, scan, axes);
+    const RenderSettings settings = with_fitting_frames(task.settings, task.scene, scan, axes);
     RestirRenderer renderer(scan, settings);
     require_memory("restir", "reservoirs", renderer.bytes_needed(axes));
     const auto restir_scene = std::make_shared<RestirScene>(
@@ -242,7 +244,7 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
         const core::Stopwatch watch;
         require_gate_to_shrink_to(frame.axes, used);
         if (frame.index == 0) {
-            used = with_fitting_frames(used, scan, frame.axes);
+            used = with_fitting_frames(used, *frame.scene, scan, frame.axes);
             num_chains = num_chains_of(used);
         }
         if (scene == nullptr || scene->scene != frame.scene) {
