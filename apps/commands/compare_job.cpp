@@ -41,7 +41,7 @@ Comparison compare_volume_to_scene(const std::string& a,
     const core::TrueSurface truth = SceneTruth(b).surface(result.volume.axes);
     Comparison comparison{nlos::compare_to_truth(result, truth, threshold_m),
                           {},
-                          nlos::comparison_panels(result, nearest_surfaces(truth, result.depth))};
+                          nlos::comparison_panels(result, truth)};
     if (auto text = nlos::coarse_truth_warning(truth)) {
         comparison.warnings.push_back(std::move(*text));
     }

@@ -154,7 +154,8 @@ std::vector<Panel> volume_panels(const Reconstruction& reconstruction) {
 }
 
 std::vector<Panel> comparison_panels(const Reconstruction& reconstruction,
-                                     const core::DepthMap& truth) {
+                                     const core::TrueSurface& truth_of_columns) {
+    const core::DepthMap& truth = truth_of_columns.main;
     const core::DepthMap& found = reconstruction.depth;
     if (found.x_m.size() != truth.x_m.size() || found.y_m.size() != truth.y_m.size()) {
         throw core::Error("comparison picture",
@@ -169,8 +170,9 @@ std::vector<Panel> comparison_panels(const Reconstruction& reconstruction,
     std::optional<Range> range = depth_range_m(truth.depth_m);
     if (!range) range = depth_range_m(found.depth_m);
     const auto limit_m = error_limit_m(truth.depth_m);
+    const core::DepthMap nearest = core::nearest_surfaces(truth_of_columns, found);
     const auto error_mm = [&](std::size_t i) {
-        return 1000.0 * (found.depth_m[i] - truth.depth_m[i]);
+        return 1000.0 * (found.depth_m[i] - nearest.depth_m[i]);
     };
     return {depth_panel(truth, "True depth", range),
             depth_panel(found, "Reconstructed depth", range),

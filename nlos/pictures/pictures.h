@@ -4,7 +4,7 @@
 #include "nlos/pictures/picture.h"
 #include "nlos/reconstruction/reconstruction.h"
 #include "renderer/core/capture/capture.h"
-#include "renderer/core/depth_map.h"
+#include "renderer/core/true_surface.h"
 
 #include <vector>
 
@@ -33,10 +33,11 @@ std::vector<Panel> velocity_panels(const core::Capture& capture);
 /// returns   the bytes of a PNG file
 std::string encode_preview_png(const core::Capture& capture, const core::PinholeCamera& camera);
 
-/// True depth, reconstructed depth on the same scale, and their signed difference.
+/// True depth, reconstructed depth on the same scale, and the signed difference from the nearest
+/// true surface of each column.
 /// throws    core::Error when the two have different columns
 std::vector<Panel> comparison_panels(const Reconstruction& reconstruction,
-                                     const core::DepthMap& truth);
+                                     const core::TrueSurface& truth_of_columns);
 
 /// Values of columns along the wall's normal, such as a maximum projection, as an eye at the wall
 /// sees them; `values` are stored [x][y].
