@@ -17,6 +17,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -253,9 +254,10 @@ std::vector<ReconstructionRow> measure_reconstructions(
         const core::Capture clean = clean_capture(scene);
         // Scans that are converted to confocal ones have columns of their own.
         std::optional<core::TrueSurface> truth;
+        std::array<std::vector<double>, 2> columns_of_truth;
         const auto truth_for = [&](const nlos::VolumeAxes& axes) -> const core::TrueSurface& {
-            if (!truth || truth->main.x_m.size() != axes.x_m.size() ||
-                truth->main.y_m.size() != axes.y_m.size()) {
+            if (columns_of_truth != std::array{axes.x_m, axes.y_m}) {
+                columns_of_truth = {axes.x_m, axes.y_m};
                 truth = renderer::trace_true_surface(scene.scene(),
                                                      axes.world_from_wall,
                                                      axes.x_m,
