@@ -31,16 +31,19 @@ int candidates_per_frame(const RestirSettings& settings) {
 
 // Settings whose frames take no more candidates than are asked for in all: by at least two frames,
 // whose difference tells the error, unless there is but one candidate. On scans of a narrow axis,
-// where few walks are of the wanted length, they are connections.
+// where few walks are of the wanted length, third bounces alone are connections: they serve no other
+// orders. Pixels have none but those of walks.
 RenderSettings with_fitting_frames(RenderSettings settings,
                                    const Scene& scene,
                                    const core::Scan& scan,
                                    const core::HistogramAxes& axes) {
     RestirSettings& restir = settings.restir;
     if (!restir.candidates) {
-        const bool connects = scan.has_wall() && is_narrow(scene, scan, axes, settings);
+        const bool connects = scan.has_wall() && settings.max_bounces == first_order(scan) &&
+                              is_narrow(scene, scan, axes, settings);
         restir.candidates = connects ? Candidates::Ellipsoidal : Candidates::Shared;
     }
+    if (!scan.has_wall()) restir.connections = 0;
     const int most = std::max(1, settings.samples / 2);
     const bool is_open_ended = settings.seconds || settings.target_error;
     if (is_open_ended || candidates_per_frame(restir) <= most) return settings;
