@@ -51,7 +51,8 @@ template <class Visitor>
 void for_each_field(RestirSettings& s, Visitor&& visit) {
     visit("candidates",
           s.candidates,
-          "what reservoirs choose from; null: connections in one gate of a wall scan, else shared");
+          "what reservoirs choose from; null: connections for third bounces on narrow axes, else "
+          "shared");
     visit("walks", s.walks, core::at_least(1, "walks from the sensor, per pair and frame"));
     visit("shared_walks",
           s.shared_walks,
