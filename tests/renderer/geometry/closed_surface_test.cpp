@@ -13,23 +13,8 @@ using core::Vec3;
 using renderer::Object;
 
 /// A closed box, its normals pointing outwards or inwards.
-Object box_at(const Vec3& centre, bool points_outwards) {
-    Object box;
-    for (int i = 0; i < 8; ++i) {
-        box.mesh.vertices.push_back(centre + 0.1 * Vec3(i & 1, (i >> 1) & 1, (i >> 2) & 1));
-    }
-    box.mesh.triangles = {{0, 2, 1},
-                          {1, 2, 3},
-                          {4, 5, 6},
-                          {5, 7, 6},
-                          {0, 1, 4},
-                          {1, 5, 4},
-                          {2, 6, 3},
-                          {3, 6, 7},
-                          {0, 4, 2},
-                          {2, 4, 6},
-                          {1, 3, 5},
-                          {3, 7, 5}};
+Object box_at(const Vec3& low, bool points_outwards) {
+    Object box = third_bounce_test::box_object(low, low + Vec3::Constant(0.1));
     if (points_outwards) return box;
     for (auto& triangle : box.mesh.triangles) std::swap(triangle[1], triangle[2]);
     return box;

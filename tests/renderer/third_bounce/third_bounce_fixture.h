@@ -24,6 +24,28 @@ inline renderer::SceneGeometry geometry_of(const std::vector<test_support::Paral
     return geometry;
 }
 
+/// A closed box between two corners, its normals pointing outwards.
+inline renderer::Object box_object(const core::Vec3& low, const core::Vec3& high) {
+    renderer::Object box;
+    for (int i = 0; i < 8; ++i) {
+        box.mesh.vertices.emplace_back(
+            (i & 1 ? high : low).x(), (i & 2 ? high : low).y(), (i & 4 ? high : low).z());
+    }
+    box.mesh.triangles = {{0, 2, 1},
+                          {1, 2, 3},
+                          {4, 5, 6},
+                          {5, 7, 6},
+                          {0, 1, 4},
+                          {1, 5, 4},
+                          {2, 6, 3},
+                          {3, 6, 7},
+                          {0, 4, 2},
+                          {2, 4, 6},
+                          {1, 3, 5},
+                          {3, 7, 5}};
+    return box;
+}
+
 inline renderer::Scene scene_of(renderer::SceneGeometry geometry, const core::WallScan& scan) {
     renderer::RelayWall wall;
     wall.albedo = kWallAlbedo;

@@ -228,23 +228,8 @@ TEST(ThirdBounceScenes, ClosedObjectHidesItsBack) {
     // A closed box and its front face alone look the same from far in front.
     const core::WallScan scan = test_support::confocal_scan({Vec3::Zero()});
     renderer::SceneGeometry closed;
-    closed.objects.emplace_back();
-    auto& mesh = closed.objects[0].mesh;
-    for (int i = 0; i < 8; ++i) {
-        mesh.vertices.emplace_back(i & 1 ? 0.1 : -0.1, i & 2 ? 0.1 : -0.1, i & 4 ? 0.8 : 0.6);
-    }
-    mesh.triangles = {{0, 2, 1},
-                      {1, 2, 3},
-                      {4, 5, 6},
-                      {5, 7, 6},
-                      {0, 1, 4},
-                      {1, 5, 4},
-                      {2, 6, 3},
-                      {3, 6, 7},
-                      {0, 4, 2},
-                      {2, 4, 6},
-                      {1, 3, 5},
-                      {3, 7, 5}};
+    closed.objects.push_back(
+        third_bounce_test::box_object(Vec3(-0.1, -0.1, 0.6), Vec3(0.1, 0.1, 0.8)));
     const core::TimeAxis axis{1.0, 0.02, 60};
     const auto box =
         renderer::render(scene_of(std::move(closed), scan), scan, axis, settings_for(1e-3), {});
