@@ -11,20 +11,13 @@ namespace {
 using core::TriangleMesh;
 using core::Vec3;
 
-// Vertices nearer together than a ten-millionth of the mesh are one: files repeat them where
-// normals or textures differ, and rounding parts them.
+// Vertices with equal positions are one: files repeat them where normals or textures differ.
 std::vector<std::uint32_t> welded_vertices(const TriangleMesh& mesh) {
-    constexpr double kWelded = 1e-7;
-    Eigen::AlignedBox3d box;
-    for (const Vec3& vertex : mesh.vertices) box.extend(vertex);
-    const Vec3 middle = box.center();
-    const double step_m = std::max(kWelded * box.sizes().maxCoeff(), 1e-300);
     std::map<std::array<double, 3>, std::uint32_t> first;
     std::vector<std::uint32_t> welded;
-    for (const Vec3& vertex : mesh.vertices) {
-        const Vec3 steps = ((vertex - middle) / step_m).array().round();
+    for (const Vec3& v : mesh.vertices) {
         const auto index = static_cast<std::uint32_t>(welded.size());
-        welded.push_back(first.try_emplace({steps.x(), steps.y(), steps.z()}, index).first->second);
+        welded.push_back(first.try_emplace({v.x(), v.y(), v.z()}, index).first->second);
     }
     return welded;
 }
