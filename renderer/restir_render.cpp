@@ -31,8 +31,8 @@ int candidates_per_frame(const RestirSettings& settings) {
 
 // Settings whose frames take no more candidates than are asked for in all: by at least two frames,
 // whose difference tells the error, unless there is but one candidate. On scans of a narrow axis,
-// where few walks are of the wanted length, third bounces alone are connections: they serve no other
-// orders. Pixels have none but those of walks.
+// where few walks are of the wanted length, third bounces alone are connections: they serve no
+// other orders. Pixels have none but those of walks.
 RenderSettings with_fitting_frames(RenderSettings settings,
                                    const Scene& scene,
                                    const core::Scan& scan,

@@ -140,8 +140,8 @@ TEST_P(ReconstructionLaw, EmptyBinsBehindTheLightChangeNoSurface) {
     if (GetParam().pattern != core::ScanPattern::Confocal) return;
     std::vector<core::DepthMap> depths;
     for (const int more : {0, 64, 300}) {
-        core::Capture capture = dark_capture(
-            core::Transform::Identity(), {0.0, kAxis.bin_width_m, kAxis.num_bins + more});
+        core::Capture capture = dark_capture(core::Transform::Identity(),
+                                             {0.0, kAxis.bin_width_m, kAxis.num_bins + more});
         nlos_test::add_scatterer(capture, kStoredPoint, 4.0);
         depths.push_back(reconstruct(capture, GetParam().method.settings(), {}).depth);
     }

@@ -31,7 +31,8 @@ struct FrameSequence {
     double gate_step_m = 0.0;              ///< by which the time axis moved per frame
     double frame_s = 0.0;                  ///< in which objects moved on per frame
     std::vector<ObservedBins> observed{};  ///< of each frame; empty: all have those of the capture
-    /// Relative L2 over all of each frame that its estimate reports, NaN: not known; empty: of none.
+    /// Relative L2 over all of each frame that its estimate reports, NaN: not known; empty: of
+    /// none.
     std::vector<double> errors{};
 };
 
