@@ -3,8 +3,8 @@
 // noise, so the spread is taken from independent renders, not from variances of single values.
 #include "renderer/core/random.h"
 #include "renderer/core/system/parallel.h"
-#include "renderer/frame_sequence.h"
 #include "renderer/restir_render.h"
+#include "tests/renderer/restir/restir_fixture.h"
 #include "tests/support/error_message.h"
 #include "tests/support/repeated_estimates.h"
 #include "tests/support/statistics.h"
@@ -16,6 +16,7 @@
 #include <cmath>
 #include <functional>
 
+namespace restir_test {
 namespace {
 
 using core::Vec3;
@@ -23,68 +24,8 @@ using renderer::Estimator;
 using test_support::Estimate;
 using test_support::expect_same_means;
 using test_support::Numbers;
-using test_support::Parallelogram;
 using test_support::repeat;
 using test_support::sums_of;
-
-// Two surfaces that light each other, an occluder before them, and a relay wall.
-constexpr double kSpeed = 0.2;
-
-std::vector<renderer::Object> make_objects() {
-    std::vector<renderer::Object> objects = test_support::facing_surfaces();
-    objects[1].role = renderer::Role::BackWall;
-    objects[0].velocity_m_per_s = Vec3(0.0, 0.1, -kSpeed);
-    return objects;
-}
-
-renderer::SceneGeometry geometry(bool glossy) {
-    renderer::SceneGeometry result{make_objects(), {}};
-    if (glossy) {
-        result.objects[0].material.model = renderer::model_of({.metallic = true});
-        result.objects[0].material.roughness = 0.5;
-    }
-    return result;
-}
-
-core::Scan wall_scan(core::ScanPattern pattern) {
-    std::vector<Vec3> points;
-    for (int i = 0; i < 9; ++i) {
-        points.emplace_back(-0.3 + 0.2 * (i % 3), -0.2 + 0.2 * (i / 3), 0.0);
-    }
-    if (pattern == core::ScanPattern::Confocal) return test_support::confocal_scan(points);
-    if (pattern == core::ScanPattern::Single) {
-        return test_support::single_scan({0.1, 0.05, 0.0}, points);
-    }
-    return test_support::exhaustive_scan({{0.1, 0.05, 0.0}, {-0.2, 0.1, 0.0}}, points);
-}
-
-core::Scan image() {
-    core::PinholeCamera camera;
-    camera.position_m = Vec3(0.1, 0.1, -0.5);
-    camera.look_at_m = Vec3(0.05, 0, 0.8);
-    camera.light_m = Vec3(-0.3, 0.3, -0.1);
-    camera.resolution = {4, 4};
-    return core::ImageScan{camera};
-}
-
-// All pixels see one surface, and no edge crosses them.
-core::Scan close_up() {
-    core::PinholeCamera camera = image().as<core::ImageScan>()->camera;
-    camera.look_at_m = Vec3(0.08, 0.12, 0.83);
-    camera.fov_y_deg = 1.5;
-    return core::ImageScan{camera};
-}
-
-renderer::RenderSettings restir_settings(Estimator method, int samples, int max_bounces) {
-    renderer::RenderSettings settings;
-    settings.method = method;
-    settings.samples = samples;
-    settings.max_bounces = max_bounces;
-    settings.restir.shared_walks = 64;
-    settings.restir.neighbours = 2;
-    settings.restir.reuse_bins = true;
-    return settings;
-}
 
 Estimate render_often(const renderer::Scene& scene,
                       const core::Scan& scan,
@@ -104,8 +45,6 @@ struct Case {
     std::function<void(renderer::RenderSettings&)> change;
 };
 
-const core::TimeAxis kHistogram{1.2, 0.15, 12};
-const core::TimeAxis kGate{1.7, 0.1, 1};
 const core::TimeAxis kImageHistogram{1.8, 0.3, 6};
 const core::TimeAxis kImageGate{2.2, 0.6, 1};
 
@@ -256,105 +195,6 @@ INSTANTIATE_TEST_SUITE_P(Scenes, RestirOfScenes, testing::ValuesIn(kScenes), [](
     return test.param;
 });
 
-// Totals of every frame, and the last frame's pairs.
-Numbers sums_of_frames(const core::Scan& scan,
-                       const renderer::SceneDescription& description,
-                       bool glossy) {
-    const auto scene =
-        std::make_shared<const renderer::Scene>(geometry(glossy), scan, description.relay_wall);
-    const auto result = renderer::render_frames(
-        scene, scan, description, renderer::make_frame_renderer(scan, description.render), {});
-    Numbers numbers;
-    for (const core::Transient& frame : result.capture.sequence->frames) {
-        numbers.push_back(sums_of(frame).back());
-    }
-    const Numbers last = sums_of(result.capture.transient);
-    numbers.insert(numbers.end(), last.begin(), last.end());
-    return numbers;
-}
-
-class RestirFrames : public testing::TestWithParam<bool> {};
-
-TEST_P(RestirFrames, EveryFrameAgreesWithPathTracing) {
-    const bool is_image = GetParam();
-    const core::Scan scan = is_image ? close_up() : wall_scan(core::ScanPattern::Confocal);
-    for (const auto& [step, frame_s] :
-         std::vector<std::pair<double, double>>{{0.02, 0.0}, {0.0, 0.0}, {0.01, 0.1}}) {
-        SCOPED_TRACE(testing::Message() << "gate step " << step << ", frame " << frame_s << " s");
-        renderer::SceneDescription description;
-        description.time_axis = {is_image ? core::TimeAxis{2.45, 0.5, 1} : kGate};
-        description.frames = {6, step, frame_s};
-        const auto sequence = [&](Estimator method, int samples) {
-            description.render = restir_settings(method, samples, is_image ? 3 : 4);
-            return repeat(
-                [&](std::uint64_t seed) {
-                    description.render.seed = seed;
-                    return sums_of_frames(scan, description, false);
-                },
-                std::string("RestirFrames.") + std::string(core::enum_name(method)));
-        };
-        expect_same_means(sequence(Estimator::Restir, 65), sequence(Estimator::Path, 2048), 0.2);
-    }
-}
-
-// The mean square that is reported over the mean square of what estimates differ by.
-TEST_P(RestirFrames, EveryFrameReportsItsError) {
-    constexpr int kSeeds = 48;
-    const bool is_image = GetParam();
-    const core::Scan scan = is_image ? close_up() : wall_scan(core::ScanPattern::Confocal);
-    for (const auto& [step, frame_s] :
-         std::vector<std::pair<double, double>>{{0.02, 0.0}, {0.0, 0.0}, {0.01, 0.1}}) {
-        renderer::SceneDescription description;
-        description.time_axis = {is_image ? core::TimeAxis{2.45, 0.5, 1} : kGate};
-        description.frames = {5, step, frame_s};
-        description.render = restir_settings(Estimator::Restir, 256, is_image ? 3 : 4);
-        const auto scene =
-            std::make_shared<const renderer::Scene>(geometry(false), scan, description.relay_wall);
-        std::vector<core::FrameSequence> sequences;
-        for (int seed = 0; seed < kSeeds; ++seed) {
-            description.render.seed = test_support::seed_of("RestirFrames.Errors") + seed;
-            sequences.push_back(
-                *renderer::render_frames(scene,
-                                         scan,
-                                         description,
-                                         renderer::make_frame_renderer(scan, description.render),
-                                         {})
-                     .capture.sequence);
-        }
-        std::vector<double> true_squares;
-        for (std::size_t frame = 0; frame < 5; ++frame) {
-            const std::size_t size = sequences[0].frames[frame].values().size();
-            std::vector<double> sum(size), squares(size);
-            double reported = 0.0;
-            for (const core::FrameSequence& sequence : sequences) {
-                const auto values = sequence.frames[frame].values();
-                double norm = 0.0;
-                for (std::size_t i = 0; i < size; ++i) {
-                    sum[i] += double{values[i]};
-                    squares[i] += double{values[i]} * double{values[i]};
-                    norm += double{values[i]} * double{values[i]};
-                }
-                ASSERT_EQ(sequence.errors.size(), 5U);
-                reported += std::pow(sequence.errors[frame], 2) * norm / kSeeds;
-            }
-            double true_square = 0.0;
-            for (std::size_t i = 0; i < size; ++i) {
-                true_square += (squares[i] - sum[i] * sum[i] / kSeeds) / (kSeeds - 1);
-            }
-            true_squares.push_back(true_square);
-            const double ratio = std::sqrt(true_square / reported);
-            EXPECT_GT(ratio, 0.8) << step << ' ' << frame_s << ' ' << frame;
-            EXPECT_LT(ratio, 1.25) << step << ' ' << frame_s << ' ' << frame;
-        }
-        // Five frames are worth five where nothing changes, and elsewhere no less than one.
-        EXPECT_LT(true_squares.back(), (step == 0.0 ? 0.35 : 1.5) * true_squares.front());
-    }
-}
-
-INSTANTIATE_TEST_SUITE_P(Measurements, RestirFrames, testing::Bool(), [](const auto& test) {
-    return std::string(test.param ? "image" : "scan");
-});
-
 TEST(Restir, WiderGatesShiftedIntoNarrowOnesChangeNoMean) {
     const core::Scan scan = wall_scan(core::ScanPattern::Confocal);
     const renderer::Scene scene(geometry(false), scan, {});
@@ -383,23 +223,6 @@ TEST(Restir, SameBitsForAnyNumberOfThreads) {
     }
 }
 
-TEST(Restir, StaticFramesSettle) {
-    // With a gate that stands still, what frames have seen adds up: by no more than the settings'
-    // defaults, the error falls as that of the mean of the frames does.
-    const core::Scan scan = wall_scan(core::ScanPattern::Confocal);
-    renderer::SceneDescription description;
-    description.time_axis = {kGate};
-    description.frames = {20, 0.0, 0.0};
-    description.render = restir_settings(Estimator::Restir, 65, 3);
-    const Estimate estimate = repeat(
-        [&](std::uint64_t seed) {
-            description.render.seed = seed;
-            return sums_of_frames(scan, description, false);
-        },
-        "Restir.Static");
-    EXPECT_LT(estimate.squared_error[19], 0.12 * estimate.squared_error[0]);
-}
-
 TEST(Restir, SettingsSayWhatIsWrong) {
     renderer::RenderSettings settings = restir_settings(Estimator::Restir, 64, 10);
     EXPECT_ERROR_WITH(renderer::validate(settings, "render"), "found 10 for method restir");
@@ -416,3 +239,4 @@ TEST(Restir, SettingsSayWhatIsWrong) {
 }
 
 }  // namespace
+}  // namespace restir_test
