@@ -2,7 +2,7 @@
 #include "nlos/reconstruct_choices.h"
 
 #include "nlos/methods/virtual_wave.h"
-#include "nlos/preparation/capture_check.h"
+#include "nlos/preparation/checks/capture_check.h"
 #include "nlos/preparation/direct_response.h"
 #include "nlos/preparation/wiener_snr.h"
 #include "renderer/core/capture/recorded_detector.h"

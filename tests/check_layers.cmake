@@ -24,6 +24,7 @@ set(floors_nlos
     "nlos/containers|nlos/fourier|nlos/detector|nlos/reconstruction|nlos/canvas"
     "nlos/layouts|nlos/containers/writers|nlos/plots"
     "nlos/formats|nlos/compare|nlos/preparation"
+    "nlos/preparation/checks"
     "nlos/methods|nlos/pictures"
     "nlos/solver"
     "nlos")

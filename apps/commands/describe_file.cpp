@@ -7,7 +7,7 @@
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/volume_file.h"
 #include "nlos/layouts/layout_guess.h"
-#include "nlos/preparation/capture_check.h"
+#include "nlos/preparation/checks/capture_check.h"
 #include "nlos/preparation/wall_frame.h"
 #include "renderer/core/capture/recorded_detector.h"
 #include "renderer/core/file_suffix.h"

@@ -2,7 +2,7 @@
 // Mistakes in describing captures of rendered scenes: are they seen, named, and not seen where
 // there are none? Prints the table of mistakes and scenes.
 #include "apps/bench/scene.h"
-#include "nlos/preparation/capture_check.h"
+#include "nlos/preparation/checks/capture_check.h"
 #include "renderer/core/capture/capture.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/preparation/capture_faults.h"
 
-#include "nlos/preparation/capture_check.h"
+#include "nlos/preparation/checks/capture_check.h"
 #include "tests/nlos/methods/confocal_scene.h"
 #include "tests/support/statistics.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Bins that were not observed count neither as light nor as darkness.
 #include "nlos/detector/detector.h"
-#include "nlos/preparation/capture_check.h"
+#include "nlos/preparation/checks/capture_check.h"
 #include "nlos/preparation/first_light.h"
 #include "nlos/preparation/gated_capture.h"
 #include "nlos/preparation/histogram_preparation.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/preparation/capture_check.h"
+#include "nlos/preparation/checks/capture_check.h"
 
 #include "nlos/detector/detector.h"
 #include "nlos/preparation/first_light.h"

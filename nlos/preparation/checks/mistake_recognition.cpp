@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/preparation/capture_correction.h"
+#include "nlos/preparation/checks/capture_correction.h"
+#include "nlos/preparation/checks/scatter_fit.h"
 #include "nlos/preparation/histogram_sample.h"
-#include "nlos/preparation/scatter_fit.h"
 #include "renderer/core/capture/capture.h"
 
 #include <algorithm>

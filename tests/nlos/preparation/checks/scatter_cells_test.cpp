@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/preparation/scatter_cells.h"
+#include "nlos/preparation/checks/scatter_cells.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/preparation/wall_unit.h"
+#include "nlos/preparation/checks/wall_unit.h"
 
 #include <fmt/format.h>
 

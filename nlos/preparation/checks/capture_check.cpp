@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/preparation/capture_check.h"
+#include "nlos/preparation/checks/capture_check.h"
 
-#include "nlos/preparation/capture_correction.h"
 #include "nlos/preparation/capture_faults.h"
+#include "nlos/preparation/checks/capture_correction.h"
+#include "nlos/preparation/checks/wall_unit.h"
 #include "nlos/preparation/first_light.h"
 #include "nlos/preparation/histogram_preparation.h"
-#include "nlos/preparation/wall_unit.h"
 #include "renderer/core/capture/sensor_footprint.h"
 #include "renderer/core/settings/json_file.h"
 #include "renderer/core/statistics.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/preparation/capture_check.h"
+#include "nlos/preparation/checks/capture_check.h"
 #include "renderer/core/capture/recorded_detector.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/preparation/scatter_fit.h"
+#include "nlos/preparation/checks/scatter_fit.h"
 
-#include "nlos/preparation/scatter_cells.h"
+#include "nlos/preparation/checks/scatter_cells.h"
 
 #include <algorithm>
 #include <cmath>

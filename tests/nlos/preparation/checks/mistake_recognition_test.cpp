@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Mistakes in describing captures of a few scatterers; those of rendered scenes are in
 // tests/apps/mistakes_test.cpp.
-#include "nlos/preparation/capture_correction.h"
+#include "nlos/preparation/checks/capture_correction.h"
+#include "nlos/preparation/checks/scatter_fit.h"
 #include "nlos/preparation/histogram_sample.h"
-#include "nlos/preparation/scatter_fit.h"
 #include "renderer/core/system/parallel.h"
 #include "tests/nlos/methods/confocal_scene.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "nlos/preparation/scatter_cells.h"
+#include "nlos/preparation/checks/scatter_cells.h"
 
 namespace nlos {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nlos/preparation/capture_correction.h"
+#include "nlos/preparation/checks/capture_correction.h"
 
 #include "nlos/preparation/wall_frame.h"
 
