@@ -26,7 +26,7 @@ class SceneTruth {
     core::DepthMap depth_map() const { return renderer::trace_ground_truth(scene_, description_); }
 
     /// The surface that the whole wall sees, to score points with.
-    core::TrueSurface surface() const { return surface(depth_map()); }
+    core::TrueSurface surface() const { return renderer::trace_true_surface(scene_, description_); }
 
     /// What is seen from the columns of a volume or of a depth map, to score it.
     template <class Columns>

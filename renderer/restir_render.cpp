@@ -287,10 +287,8 @@ FrameRenderer make_restir_frame_renderer(const core::Scan& scan, const RenderSet
         RenderResult result =
             result_of(sums, static_cast<int>(done), frame_scan, frame.axes, *scene, used, counts);
         result.num_rays -= before.num_rays;
-        if (done > 1) {
-            result.estimated_error =
-                relative_error(sums.time.squared_norms(static_cast<int>(done), nullptr), {});
-        }
+        result.estimated_error =
+            relative_error(sums.time.squared_norms(static_cast<int>(done), nullptr), {});
         result.seconds = watch.seconds();
         return result;
     };

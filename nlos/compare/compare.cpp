@@ -275,8 +275,7 @@ std::optional<std::string> coarse_truth_warning(const core::TrueSurface& truth) 
     if (truth.lost_at_half <= kAccepted) return std::nullopt;
     return fmt::format(
         "the truth changes with its resolution: {:.0f} % of the surface is too thin for a view "
-        "half "
-        "as fine; a larger ground_truth.depth_resolution shows it as it is",
+        "half as fine; a larger ground_truth.depth_resolution shows it as it is",
         100.0 * truth.lost_at_half);
 }
 

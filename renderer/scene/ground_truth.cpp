@@ -150,6 +150,16 @@ core::TrueSurface trace_true_surface(const Scene& scene,
         scene, world_from_wall, x_m, y_m, std::min(size_m[0] / nx, size_m[1] / ny));
 }
 
+core::TrueSurface trace_true_surface(const Scene& scene, const SceneDescription& description) {
+    const RelayWall& wall = description.relay_wall;
+    const auto& [nx, ny] = description.ground_truth.depth_resolution;
+    return trace_true_surface(scene,
+                              description,
+                              wall.world_from_wall(),
+                              cell_centers(wall.size_m[0], nx),
+                              cell_centers(wall.size_m[1], ny));
+}
+
 core::DepthMap trace_ground_truth(const Scene& scene, const SceneDescription& description) {
     const RelayWall& wall = description.relay_wall;
     const auto& [nx, ny] = description.ground_truth.depth_resolution;

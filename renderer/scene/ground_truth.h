@@ -38,6 +38,9 @@ core::TrueSurface trace_true_surface(const Scene& scene,
                                      const std::vector<double>& x_m,
                                      const std::vector<double>& y_m);
 
+/// The same of the whole wall, with its columns.
+core::TrueSurface trace_true_surface(const Scene& scene, const SceneDescription& description);
+
 /// A depth map in the wall's own frame, over its whole size, at cell centres.
 core::DepthMap trace_ground_truth(const Scene& scene, const SceneDescription& description);
 
