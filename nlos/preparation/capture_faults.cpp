@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/preparation/capture_faults.h"
 
+#include "nlos/preparation/histogram_preparation.h"
 #include "renderer/core/capture/masked_bins.h"
 #include "renderer/core/statistics.h"
 #include "renderer/core/system/parallel.h"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 namespace nlos {
@@ -53,13 +55,14 @@ class FaultFinder {
     }
 
     /// Of the pairs that outshine most, hot bins and hot points.
-    void find_hot(CaptureFaults& faults) const {
+    void find_hot(CaptureFaults& faults) {
         for (std::size_t pair = 0; pair < light_.size(); ++pair) {
             const PairLight& own = light_[pair];
             if (own.peak <= kTimesTheirPeaks * usual_peak_ &&
                 own.far_peak <= kTimesTheirPeaks * usual_far_peak_) {
                 continue;
             }
+            if (!dark_) dark_ = dark_light();
             const std::vector<int> bins = hot_bins_of(pair);
             if (static_cast<int>(bins.size()) > capture_.time_axis.num_bins / kManyBins) {
                 faults.hot_points.push_back(pair);
@@ -156,11 +159,34 @@ class FaultFinder {
             return std::numeric_limits<double>::infinity();
         }
         const auto histogram = capture_.transient.histogram(other);
-        float most = 0.0F;
+        double most = 0.0;
         for (int i = near.begin; i < near.end; ++i) {
-            most = std::max(most, histogram[static_cast<std::size_t>(i)]);
+            most = std::max(most, static_cast<double>(histogram[static_cast<std::size_t>(i)]));
         }
-        return static_cast<double>(most) * std::pow(1.0 + distance / range_m(pair, bin), 8.0);
+        const double by_chance = std::min(most, dark_->most_by_chance[other]);
+        const double nearer = std::pow(1.0 + distance / range_m(pair, bin), 8.0);
+        return dark_->photon + by_chance + (most - by_chance) * nearer;
+    }
+
+    /// What bins hold without light of the scene.
+    struct DarkLight {
+        double photon = 0.0;
+        std::vector<double> most_by_chance;  ///< per pair; 5 deviations, of few photons 5 of them
+    };
+    DarkLight dark_light() const {
+        const auto signal = find_signal(capture_.transient, capture_.observed, capture_.unit);
+        DarkLight dark{capture_.unit == core::TransientUnit::Counts ? 1.0 : 0.0, {}};
+        if (!signal) {
+            dark.most_by_chance.resize(light_.size(), 0.0);
+            return dark;
+        }
+        dark.photon = signal->photon;
+        for (const double ambient : signal->ambient_per_bin) {
+            const double mean = std::max(0.0, ambient);
+            dark.most_by_chance.push_back(mean + 5.0 * std::sqrt(mean * dark.photon) +
+                                          5.0 * dark.photon);
+        }
+        return dark;
     }
 
     /// All bins of a hot point, or some, of a pair.
@@ -176,7 +202,6 @@ class FaultFinder {
         if (!(peak > 0.0)) return {};  // nothing to be held against
         const core::BinRange seen = capture_.observed_range(pair);
         const auto histogram = capture_.transient.histogram(pair);
-        const bool is_counts = capture_.unit == core::TransientUnit::Counts;
         std::vector<int> hot;
         std::vector<int> bright;  // brighter than all that the neighbours hold
         for (int bin = seen.begin; bin < seen.end; ++bin) {
@@ -190,7 +215,6 @@ class FaultFinder {
             for (const std::size_t other : near) {
                 light = std::max(light, neighbours_light(pair, bin, other));
             }
-            if (is_counts) light += 1.0;
             if (value > kTimesNeighbours * light) hot.push_back(bin);
         }
         return 2 * static_cast<int>(bright.size()) > seen.size() ? bright : hot;
@@ -221,6 +245,82 @@ class FaultFinder {
     std::vector<PairLight> light_;
     double usual_peak_ = 0.0;
     double usual_far_peak_ = 0.0;
+    std::optional<DarkLight> dark_;
+};
+
+/// Bins of all pairs by whether they hold the largest value.
+class SaturationFinder {
+ public:
+    explicit SaturationFinder(const core::Capture& capture) : capture_(capture) {
+        for_each([&](std::size_t, int, float value) { ceiling_ = std::max(ceiling_, value); });
+        const float below = ceiling_ - below_ceiling();
+        std::size_t run = 0;
+        std::size_t last_pair = 0;
+        for_each([&](std::size_t pair, int, float value) {
+            ++num_bins_;
+            if (value != ceiling_ || pair != last_pair) run = 0;
+            last_pair = pair;
+            if (value == ceiling_) {
+                ++num_at_ceiling_;
+                if (++run > 2) ++num_in_runs_;
+            } else if (value >= below) {
+                ++num_below_;
+            }
+        });
+    }
+
+    bool is_saturated() const {
+        constexpr std::size_t kFewest = 5;
+        constexpr double kTimesANumber = 5.0;
+        constexpr float kFewCounts = 15.0F;  // so few meet by chance
+        if (!(ceiling_ > 0.0F) || num_at_ceiling_ < kFewest) return false;
+        if (2 * num_at_ceiling_ > num_bins_) return false;  // a capture without light of its own
+        const bool has_runs = 4 * num_in_runs_ > num_at_ceiling_;
+        if (capture_.unit != core::TransientUnit::Counts) return has_runs;
+        const double per_number =
+            static_cast<double>(num_below_) / static_cast<double>(below_ceiling());
+        return ceiling_ >= kFewCounts && (has_runs || is_full_bits(ceiling_)) &&
+               static_cast<double>(num_at_ceiling_) > kTimesANumber * (1.0 + per_number);
+    }
+
+    void find(CaptureFaults& faults) const {
+        std::map<std::size_t, std::vector<int>> saturated;
+        for_each([&](std::size_t pair, int bin, float value) {
+            if (value == ceiling_) saturated[pair].push_back(bin);
+        });
+        for (const auto& [pair, bins] : saturated) {
+            if (2 * static_cast<int>(bins.size()) > capture_.observed_range(pair).size()) {
+                faults.saturated_points.push_back(pair);
+            } else {
+                for (const int bin : bins) faults.saturated_bins.emplace_back(pair, bin);
+            }
+        }
+    }
+
+ private:
+    /// Whether it is the most that 4, 8, 12, ... bits hold.
+    static bool is_full_bits(float value) {
+        const double steps = std::log2(static_cast<double>(value) + 1.0) / 4.0;
+        return steps == std::round(steps);
+    }
+
+    /// How far below the ceiling noise still makes values common.
+    float below_ceiling() const { return std::ceil(std::sqrt(std::max(ceiling_, 1.0F))); }
+
+    template <class Use>
+    void for_each(const Use& use) const {
+        for (std::size_t pair = 0; pair < capture_.transient.num_pairs(); ++pair) {
+            int bin = capture_.observed_range(pair).begin;
+            for (const float value : capture_.observed_values(pair)) use(pair, bin++, value);
+        }
+    }
+
+    const core::Capture& capture_;
+    float ceiling_ = 0.0F;
+    std::size_t num_bins_ = 0;
+    std::size_t num_at_ceiling_ = 0;
+    std::size_t num_in_runs_ = 0;  ///< of these, behind two others
+    std::size_t num_below_ = 0;
 };
 
 void find_negative(const core::Capture& capture, CaptureFaults& faults) {
@@ -267,24 +367,31 @@ void append_items(const std::vector<Item>& items,
 CaptureFaults find_faults(const core::Capture& capture) {
     CaptureFaults faults;
     find_negative(capture, faults);
+    if (const SaturationFinder finder(capture); finder.is_saturated()) finder.find(faults);
     if (!capture.scan.has_wall() || capture.scan.num_pairs() < kFewestPairsForFaults) return faults;
-    const FaultFinder finder(capture);
+    FaultFinder finder(capture);
     finder.find_hot(faults);
     if (is_many(faults.hot_bins.size() + faults.hot_points.size(), capture)) {
         faults.hot_bins.clear();
         faults.hot_points.clear();
     }
     finder.find_dead(faults);
+    std::erase_if(faults.saturated_bins, [&](const CaptureFaults::PairBin& bin) {
+        return std::ranges::find(faults.hot_bins, bin) != faults.hot_bins.end();
+    });
+    std::erase_if(faults.saturated_points, [&](std::size_t pair) {
+        return std::ranges::find(faults.hot_points, pair) != faults.hot_points.end();
+    });
     return faults;
 }
 
 core::Capture leave_out(const CaptureFaults& faults, const core::Capture& capture) {
     core::MaskedBins masked;
-    for (const auto* bins : {&faults.hot_bins, &faults.negative_bins}) {
+    for (const auto* bins : {&faults.hot_bins, &faults.saturated_bins, &faults.negative_bins}) {
         for (const auto& [pair, bin] : *bins) masked[pair].push_back(bin);
     }
     for (auto& [pair, bins] : masked) std::ranges::sort(bins);
-    for (const auto* points : {&faults.hot_points, &faults.dead_points}) {
+    for (const auto* points : {&faults.hot_points, &faults.saturated_points, &faults.dead_points}) {
         for (const std::size_t pair : *points) {
             std::vector<int>& bins = masked[pair];
             bins.resize(static_cast<std::size_t>(capture.time_axis.num_bins));
@@ -304,8 +411,10 @@ std::optional<std::string> describe(const CaptureFaults& faults) {
     };
     const auto point_name = [](std::size_t pair) { return fmt::format("{}", pair); };
     append_items(faults.hot_points, "hot point", point_name, text);
+    append_items(faults.saturated_points, "saturated point", point_name, text);
     append_items(faults.dead_points, "dead point", point_name, text);
     append_items(faults.hot_bins, "hot bin", bin_name, text);
+    append_items(faults.saturated_bins, "saturated bin", bin_name, text);
     append_items(faults.negative_bins, "negative bin", bin_name, text);
     return fmt::format(
         "left out, as no light explains them: {}; capture.mask_points and "

@@ -120,6 +120,9 @@ class SegmentedTransient {
     }
     bool is_seen(std::size_t i) const { return total_[i].bins > 0.0; }
 
+    /// Variance of values over their mean where it is dark.
+    double variance_per_light() const { return variance_per_light_; }
+
     /// Light of all pairs, had all of them observed the segment, and its standard deviation.
     double sum(std::size_t i) const { return total_[i].sum * full_sight(i); }
     double deviation(std::size_t i) const {
@@ -195,6 +198,7 @@ std::optional<SignalExtent> find_signal(const core::Transient& transient,
     }
     SignalExtent extent;
     extent.has_background = parts.is_dark_constant();
+    extent.photon = parts.variance_per_light();
     double ambient_sum = 0.0;
     for (const SeenLight& own : dark) {
         const SeenLight& light = own.bins < segments.length ? all_dark : own;

@@ -17,8 +17,10 @@ namespace nlos {
 /// Ambient light of a capture and where its signal ends.
 struct SignalExtent {
     std::vector<double> ambient_per_bin;  ///< per pair
-    int end_bin = 0;                      ///< bins from here on hold nothing but ambient light
-    bool has_background = false;          ///< it is there, and the same in all of its segments
+    double photon =
+        1.0;          ///< what one adds: 1 to counts, else the dark segments' variance over mean
+    int end_bin = 0;  ///< bins from here on hold nothing but ambient light
+    bool has_background = false;  ///< it is there, and the same in all of its segments
 };
 
 /// Finds constant background light and the end of the signal.

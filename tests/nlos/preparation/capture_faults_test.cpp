@@ -77,7 +77,7 @@ TEST(CaptureFaults, AHotBinIsFoundWhereverItIs) {
     for (core::Capture& capture :
          std::array{plate_capture(), plate_counts(50.0, 0.0), plate_counts(20.0, 4.0)}) {
         const core::Capture good = capture;
-        for (const int bin : {62, 90, 127}) {
+        for (const int bin : {1, 3, 10, 62, 90, 127}) {
             for (const std::size_t point : {std::size_t{0}, kPoint, kSide * kSide - 1}) {
                 capture = good;
                 capture.transient.histogram(point)[static_cast<std::size_t>(bin)] =
@@ -120,6 +120,51 @@ TEST(CaptureFaults, HotAndDeadPointsCountAsNotObserved) {
         EXPECT_EQ(mended.observed_range(4).size(), 128);
         EXPECT_EQ(capture_warnings(capture).size(), 1U);
     }
+}
+
+/// Counts of the plate that a detector clips.
+core::Capture clipped_plate(float ceiling, double brightest) {
+    core::Capture capture = plate_counts(brightest, 1.0);
+    for (float& value : capture.transient.values()) value = std::min(value, ceiling);
+    return capture;
+}
+
+TEST(CaptureFaults, SaturatedBinsAreThoseThatNoNoiseLeavesOnOneNumber) {
+    const core::Capture clipped = clipped_plate(255.0F, 2000.0);
+    const CaptureFaults faults = find_faults(clipped);
+    const auto at_ceiling = std::ranges::count(clipped.transient.values(), 255.0F);
+    ASSERT_GT(at_ceiling, 20);
+    EXPECT_EQ(faults.saturated_bins.size(), static_cast<std::size_t>(at_ceiling));
+    for (const auto& [pair, bin] : faults.saturated_bins) {
+        EXPECT_EQ(clipped.transient.histogram(pair)[static_cast<std::size_t>(bin)], 255.0F);
+    }
+    EXPECT_TRUE(faults.hot_bins.empty());
+    EXPECT_NE(describe(faults)->find("saturated bin"), std::string::npos);
+    // A ceiling that is no full byte, but cuts pulses: by runs, in counts and in means.
+    core::Capture means = clipped_plate(40.0F, 2000.0);
+    EXPECT_FALSE(find_faults(means).saturated_bins.empty());
+    means.unit = core::TransientUnit::Radiance;
+    for (float& value : means.transient.values()) value /= 700.0F;
+    EXPECT_FALSE(find_faults(means).saturated_bins.empty());
+    for (const double brightest : {2.0, 14.0, 255.0, 2000.0}) {
+        EXPECT_TRUE(find_faults(plate_counts(brightest, 1.0)).empty()) << brightest;
+    }
+}
+
+// A corner of the wall that a detector sees too brightly is more than a twentieth of the points.
+TEST(CaptureFaults, NeighbouringPointsMayBeSaturated) {
+    core::Capture capture = plate_counts(200.0, 1.0);
+    std::vector<std::size_t> corner;
+    for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; j < 4; ++j) corner.push_back(i * kSide + j);
+    }
+    for (const std::size_t point : corner) {
+        std::ranges::fill(capture.transient.histogram(point), 4095.0F);
+    }
+    const CaptureFaults faults = find_faults(capture);
+    EXPECT_EQ(faults.saturated_points, corner);
+    EXPECT_TRUE(faults.hot_points.empty());
+    EXPECT_EQ(leave_out(faults, capture).observed_range(0).size(), 0);
 }
 
 TEST(CaptureFaults, PointsThatMayBeDarkByChanceAreNotDead) {
