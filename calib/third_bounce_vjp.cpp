@@ -80,21 +80,21 @@ void for_each_round(std::size_t num_pairs,
 }  // namespace
 
 ThirdBounceVjp::ThirdBounceVjp(core::TriangleMesh mesh,
-                               std::vector<double> albedo,
+                               const std::vector<double>& albedo,
                                core::WallScan scan,
                                const core::TimeAxis& axis,
                                const ThirdBounceVjpSettings& settings,
                                const core::Progress& progress)
-    : mesh_((check_mesh(mesh, albedo), std::move(mesh))),
-      albedo_(std::move(albedo)),
+    : counted_((check_mesh(mesh, albedo), std::move(mesh))),
+      albedo_(counted_.of_facets(albedo)),
       scan_((core::validate(scan, kWhere), std::move(scan))),
       axis_(axis),
       settings_(settings),
-      tree_(mesh_) {
+      tree_(counted_.mesh()) {
     core::check_ranges(settings_, kWhere);
     validate(axis_, std::string(kWhere) + ": time axis");
     const double smear_m = settings_.sigma_m > 0.0 ? settings_.sigma_m : 0.5 * axis_.bin_width_m;
-    elements_ = cut_mesh(mesh_, tree_, scan_, smear_m, settings_.tolerance);
+    elements_ = cut_mesh(counted_.mesh(), tree_, scan_, smear_m, settings_.tolerance);
     const auto num_bins = static_cast<std::size_t>(axis_.num_bins);
     histograms_.assign(scan_.num_pairs() * num_bins, 0.0);
     const AdjointScene scene = this->scene();
@@ -113,8 +113,14 @@ ThirdBounceVjp::ThirdBounceVjp(core::TriangleMesh mesh,
 
 AdjointScene ThirdBounceVjp::scene() const {
     const double wall = settings_.wall_albedo / core::kPi;
-    return {
-        mesh_, albedo_, tree_, elements_, scan_, axis_, wall * wall / core::kPi, settings_.sigma_m};
+    return {counted_.mesh(),
+            albedo_,
+            tree_,
+            elements_,
+            scan_,
+            axis_,
+            wall * wall / core::kPi,
+            settings_.sigma_m};
 }
 
 MeshGradients ThirdBounceVjp::pullback(std::span<const double> by_value,
@@ -128,8 +134,8 @@ MeshGradients ThirdBounceVjp::pullback(std::span<const double> by_value,
     }
     const AdjointScene scene = this->scene();
     const auto num_bins = static_cast<std::size_t>(axis_.num_bins);
-    MeshGradients total(mesh_);
-    const MeshGradients zero(mesh_);
+    MeshGradients total(counted_.mesh());
+    const MeshGradients zero = total;
     std::vector<MeshGradients> partial(kBlocksPerRound, zero);
     const auto evaluate = [&](std::size_t block, std::size_t begin, std::size_t end) {
         PairEvaluator evaluator(scene);
@@ -146,7 +152,7 @@ MeshGradients ThirdBounceVjp::pullback(std::span<const double> by_value,
             sum = zero;
         }
     });
-    return total;
+    return counted_.gradients_as_given(total);
 }
 
 }  // namespace calib

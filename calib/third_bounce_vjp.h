@@ -2,6 +2,7 @@
 #pragma once
 
 #include "calib/adjoint/adjoint_scene.h"
+#include "calib/adjoint/counted_mesh.h"
 #include "calib/adjoint/facet_tree.h"
 #include "renderer/core/capture/capture.h"
 #include "renderer/core/mesh.h"
@@ -44,14 +45,16 @@ class ThirdBounceVjp {
  public:
     /// Computes the histograms.
     ///
-    /// mesh       vertices [m, world]; facets without area count for nothing, normals are ignored
+    /// mesh       vertices [m, world]; facets without area count for nothing, of facets at one
+    /// place
+    ///            the first counts; normals are ignored
     /// albedo     per facet, at least 0
     /// scan       of wall points: single, confocal or exhaustive
     /// progress   asked now and then whether to stop
     /// throws     core::Error when one of these is not as said; core::Failure when stopped, and
     ///            beyond 200,000 surface elements
     ThirdBounceVjp(core::TriangleMesh mesh,
-                   std::vector<double> albedo,
+                   const std::vector<double>& albedo,
                    core::WallScan scan,
                    const core::TimeAxis& axis,
                    const ThirdBounceVjpSettings& settings,
@@ -74,8 +77,8 @@ class ThirdBounceVjp {
  private:
     AdjointScene scene() const;
 
-    core::TriangleMesh mesh_;
-    std::vector<double> albedo_;
+    CountedMesh counted_;
+    std::vector<double> albedo_;  ///< per facet that counts
     core::WallScan scan_;
     core::TimeAxis axis_;
     ThirdBounceVjpSettings settings_;

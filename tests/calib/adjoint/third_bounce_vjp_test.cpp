@@ -82,6 +82,65 @@ TEST(ThirdBounceVjp, FacetsWithoutAreaCountForNothing) {
     EXPECT_EQ(gradients.albedo.back(), 0.0);
 }
 
+Vec3 on_plane(double x, double y) {
+    return {x, y, 0.65 + 0.125 * x + 0.125 * y};
+}
+
+/// A square panel of two facets.
+GradientCase panel_case() {
+    GradientCase panel(1);
+    panel.settings.tolerance = 2e-3;
+    panel.shapes.mesh = {};
+    panel.shapes.mesh.vertices = {
+        on_plane(-0.2, -0.2), on_plane(0.2, -0.2), on_plane(0.2, 0.2), on_plane(-0.2, 0.2)};
+    panel.shapes.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    panel.shapes.albedo = {0.5, 0.8};
+    return panel;
+}
+
+TEST(ThirdBounceVjp, FacetsOnOthersCountForNothing) {
+    const GradientCase once = panel_case();
+    GradientCase doubled = once;
+    doubled.shapes.mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}, {1, 2, 3}};
+    doubled.shapes.albedo = {0.5, 0.8, 0.9, 0.9};
+    EXPECT_EQ(doubled.vjp(doubled.shapes).histograms(), once.vjp(once.shapes).histograms());
+    const MeshGradients expected = once.gradients();
+    const MeshGradients gradients = doubled.gradients();
+    EXPECT_EQ(gradients.vertices, expected.vertices);
+    EXPECT_EQ(gradients.albedo,
+              (std::vector<double>{expected.albedo[0], expected.albedo[1], 0.0, 0.0}));
+}
+
+TEST(ThirdBounceVjp, OfAFacetThatLiesOnOthersInPartTheRestCounts) {
+    GradientCase over = panel_case();
+    auto& vertices = over.shapes.mesh.vertices;
+    vertices.insert(vertices.end(), {on_plane(0.0, 0.0), on_plane(0.4, 0.0), on_plane(0.4, 0.2)});
+    over.shapes.mesh.triangles.push_back({4, 5, 6});
+    over.shapes.albedo.push_back(0.6);
+
+    GradientCase beside = panel_case();
+    auto& corners = beside.shapes.mesh.vertices;
+    corners.insert(
+        corners.end(),
+        {on_plane(0.2, 0.0), on_plane(0.4, 0.0), on_plane(0.4, 0.2), on_plane(0.2, 0.1)});
+    beside.shapes.mesh.triangles.insert(beside.shapes.mesh.triangles.end(), {{4, 5, 6}, {4, 6, 7}});
+    beside.shapes.albedo.insert(beside.shapes.albedo.end(), {0.6, 0.6});
+    const auto expected_light = beside.vjp(beside.shapes).histograms();
+    const auto light = over.vjp(over.shapes).histograms();
+    EXPECT_LT(test_support::relative_l2(std::span<const double>(light), expected_light), 1e-3);
+
+    // As all of it moves, the part that counts stays the same.
+    const std::vector<Vec3> motion(vertices.size(), Vec3(0.3, -0.2, 1.0));
+    const MeshGradients gradients = over.gradients();
+    double slope = 0.0;
+    for (std::size_t i = 0; i < motion.size(); ++i) slope += gradients.vertices[i].dot(motion[i]);
+    EXPECT_NEAR(slope, over.difference(motion, 1e-7), 1e-4 * std::abs(slope));
+    const MeshGradients expected = beside.gradients();
+    EXPECT_NEAR(gradients.albedo[2],
+                expected.albedo[2] + expected.albedo[3],
+                1e-2 * std::abs(gradients.albedo[2]));
+}
+
 TEST(ThirdBounceVjp, AMeshWithoutFacetsIsDark) {
     const GradientCase example(0);
     const ThirdBounceVjp vjp = example.vjp({});
