@@ -4,8 +4,8 @@
 #include "renderer/bounce_truncation.h"
 #include "renderer/ellipsoidal_render.h"
 #include "renderer/estimators.h"
-#include "renderer/light_range.h"
 #include "renderer/path_render.h"
+#include "renderer/sampling_costs.h"
 #include "renderer/smoothed_render.h"
 #include "renderer/third_bounce/third_bounce.h"
 
@@ -20,10 +20,11 @@ constexpr double kIntegratorsTime = 0.25;
 
 /// How a render that integrates third bounces goes about it.
 struct Plan {
-    bool traces = false;    ///< paths, beside the integrator
-    bool averages = false;  ///< what paths give over neighbours
-    bool connects = false;  ///< paths by their length
-    double left_out = 0.0;  ///< relative L2 over all of H of orders that are not computed
+    bool traces = false;      ///< paths, beside the integrator
+    bool averages = false;    ///< what paths give over neighbours
+    bool connects = false;    ///< paths by their length
+    double left_out = 0.0;    ///< relative L2 over all of H of orders that are not computed
+    double least_cost = 0.0;  ///< of those paths, see SamplingCosts
 };
 
 bool can_integrate(const RenderTask& task) {
@@ -53,14 +54,30 @@ std::optional<LeftOutOrders> leave_out_orders(RenderTask& task) {
     return left_out;
 }
 
+// Relative, of all that is computed, squared.
+double squared_target(const RenderSettings& settings, const Plan& plan) {
+    return std::max(0.0, std::pow(*settings.target_error, 2) - plan.left_out * plan.left_out);
+}
+
+// CPU time that trying to integrate third bounces is worth: a half of what sampling them, too,
+// takes [s]. Then the choice costs at most that much more than the better of the two knew.
+double worthwhile_work_s(const RenderTask& task, const Plan& plan, const SamplingCosts& alone) {
+    constexpr double kHalf = 0.5;
+    constexpr double kBesideIntegrator = 0.75;  // of the squared error
+    constexpr double kGainOfAverages = 10.0;
+    const double allowed = squared_target(task.settings, plan);
+    const double beside = plan.least_cost / (plan.averages ? kGainOfAverages : 1.0);
+    const double gain = alone.least() - beside / kBesideIntegrator;
+    return std::isfinite(gain) ? std::max(0.0, kHalf * gain / allowed) : alone.least();
+}
+
 // Beside paths, the integrator gets half of the error that may be left or a quarter of the time;
 // more of the error where averages over neighbours make paths cheap.
 RenderSettings settings_of_integrator(RenderSettings settings, const Plan& plan) {
     constexpr double kErrorBesidePaths = 0.5;
     constexpr double kErrorBesideAverages = 0.7;
     if (auto& target = settings.target_error) {
-        const double allowed =
-            std::sqrt(std::max(0.0, std::pow(*target, 2) - plan.left_out * plan.left_out));
+        const double allowed = std::sqrt(squared_target(settings, plan));
         const double fraction = plan.averages ? kErrorBesideAverages : kErrorBesidePaths;
         target = plan.traces ? fraction * allowed : allowed;
     }
@@ -98,13 +115,18 @@ void add_third_bounces(const ThirdBounce& third, const Plan& plan, RenderResult&
     result.interrupted = result.interrupted || third.interrupted;
 }
 
-RenderResult integrate_and_trace(const RenderTask& task, const Plan& plan) {
+// Nothing where sampling all bounces takes less work than `limits` allow.
+std::optional<RenderResult> integrate_and_trace(const RenderTask& task,
+                                                const Plan& plan,
+                                                const CutLimits& limits = {}) {
     const double done = plan.traces ? 0.1 : 1.0;
     const ThirdBounce third = integrate_third_bounce(task.scene,
                                                      task.scan.wall(),
                                                      task.axes.time,
                                                      settings_of_integrator(task.settings, plan),
-                                                     task.progress.part(0.0, done));
+                                                     task.progress.part(0.0, done),
+                                                     limits);
+    if (third.is_too_much) return std::nullopt;
     const core::Progress progress = task.progress.part(done, 1.0);
     const RenderTask rest{task.scene,
                           task.scan,
@@ -124,6 +146,11 @@ RenderResult integrate_and_trace(const RenderTask& task, const Plan& plan) {
     return result;
 }
 
+RenderResult sample(const RenderTask& task, const SamplingCosts& costs, double left_out) {
+    return (costs.connects() ? trace_connections : trace_paths)(
+        task, ThirdBounceScope::All, {nullptr, 0.0, left_out}, render_passes);
+}
+
 }  // namespace
 
 RenderResult render_auto(const RenderTask& whole) {
@@ -135,18 +162,28 @@ RenderResult render_auto(const RenderTask& whole) {
     plan.traces = surfaces.narrow_lobes || task.settings.max_bounces > 3;
     plan.averages = plan.traces && may_average(task.settings, surfaces);
     const bool integrates = can_integrate(task);
-    plan.connects =
-        (plan.traces || !integrates) && is_narrow(task.scene, task.scan, task.axes, task.settings);
-    RenderResult result =
-        integrates ? integrate_and_trace(task, plan)
-                   : (plan.connects ? trace_connections : trace_paths)(
-                         task, ThirdBounceScope::All, {nullptr, 0.0, plan.left_out}, render_passes);
-    result.left_out = left_out;
-    return result;
+    const bool has_choice = (!integrates || task.settings.target_error) &&
+                            task.settings.max_bounces >= first_order(task.scan);
+    SamplingCosts alone;
+    if (has_choice) alone = find_sampling_costs(task, ThirdBounceScope::All);
+    std::optional<RenderResult> result;
+    if (integrates) {
+        if (plan.traces) {
+            const SamplingCosts beside = find_sampling_costs(task, ThirdBounceScope::NotIntegrable);
+            plan.connects = beside.connects();
+            plan.least_cost = beside.least();
+        }
+        CutLimits limits;
+        if (has_choice) limits.work_s = worthwhile_work_s(task, plan, alone);
+        result = integrate_and_trace(task, plan, limits);
+    }
+    if (!result) result = sample(task, alone, plan.left_out);
+    result->left_out = left_out;
+    return *std::move(result);
 }
 
 RenderResult render_third_bounce(const RenderTask& task) {
-    return can_integrate(task) ? integrate_and_trace(task, {}) : render_passes(task, {});
+    return can_integrate(task) ? *integrate_and_trace(task, {}) : render_passes(task, {});
 }
 
 }  // namespace renderer

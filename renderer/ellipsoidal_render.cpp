@@ -113,6 +113,7 @@ RenderResult trace_connections(const RenderTask& task,
             drops ? ConnectionScope::Kept : ConnectionScope::All,
             scope);
     }
+    work.is_even = scope == ThirdBounceScope::All && task.scan.has_wall();
     RenderResult result = render(task, work);
     if (work.tracer == nullptr) return result;
     result.excluded = ExcludedFacets::of(task.scene, task.axes.time, task.settings).objects;

@@ -16,6 +16,8 @@
 namespace renderer {
 namespace {
 
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
 bool anything_moves(const Scene& scene) {
     return std::any_of(scene.objects().begin(), scene.objects().end(), [](const Object& object) {
         return object.velocity_m_per_s.norm() > 0.0;
@@ -95,8 +97,9 @@ RenderResult render_frames(std::shared_ptr<const Scene> scene,
         rendered.seconds += sequence.seconds;
         sequence = std::move(rendered);
         recorded.frames.push_back(sequence.capture.transient);
-        recorded.errors.push_back(
-            sequence.estimated_error.value_or(std::numeric_limits<double>::quiet_NaN()));
+        // Of nothing but noise the relative error is not known, either.
+        const double error = sequence.estimated_error.value_or(kUnknown);
+        recorded.errors.push_back(std::isfinite(error) ? error : kUnknown);
         if (i + 1 < frames.count && progress.should_stop()) sequence.interrupted = true;
     }
     const auto is_unknown = [](double error) { return std::isnan(error); };

@@ -236,13 +236,11 @@ bool is_narrow(const Scene& scene,
                const core::Scan& scan,
                const core::HistogramAxes& axes,
                const RenderSettings& settings) {
-    constexpr double kNarrowForScans = 0.15;
-    constexpr double kNarrowForImages = 0.02;
+    constexpr double kNarrow = 0.15;
     if (axes.velocity) return false;
     const auto range = find_light_range(scene, scan, settings);
     return range && !range->is_dark() &&
-           range->fraction_between(axes.time.opl_start_m, axes.time.opl_end_m()) <
-               (scan.has_wall() ? kNarrowForScans : kNarrowForImages);
+           range->fraction_between(axes.time.opl_start_m, axes.time.opl_end_m()) < kNarrow;
 }
 
 core::TimeAxis choose_time_axis(const std::optional<LightRange>& range,

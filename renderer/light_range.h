@@ -36,10 +36,9 @@ std::optional<LightRange> find_light_range(const Scene& scene,
                                            const core::Scan& scan,
                                            const RenderSettings& settings);
 
-/// Whether so little of the light lies within an axis without velocities that paths had better be
-/// made to fit it: walks waste what is outside, connections take several times as long
-/// (renderer/RESULTS.md, gates). Less than 15 % of a scan's light is little, and 2 % of an image's:
-/// walks from pixels meet light paths that all of them share.
+/// Whether so little of a scan's light, less than 15 %, lies within an axis without velocities that
+/// paths had better be made to fit it: walks waste what is outside, connections take several times
+/// as long (renderer/RESULTS.md, gates).
 bool is_narrow(const Scene& scene,
                const core::Scan& scan,
                const core::HistogramAxes& axes,

@@ -13,9 +13,20 @@ constexpr int kMaxSamplesPerPass = 16384;
 // passes.
 constexpr int kMaxSamplesPerShortPass = 256;
 constexpr double kMaxPathsPerPass = 1 << 25;  // some seconds, after which the caller may stop
-constexpr int kSamplesPerPilotPass = 32;
-constexpr double kPassesAfterPilot = 32.0;  // expected; even samples need fewer for an error
-constexpr int kLeastGrowth = 4;             // then the pilot is at most a sixteenth of the work
+
+/// How open-ended renders find the length of their passes.
+struct OpenEnded {
+    int samples_per_pass = 32;  ///< of the first ones
+    double passes = 32.0;       ///< expected
+    double least_growth = 4.0;  ///< then the first ones are at most a sixteenth of the work
+    double most_growth = 8.0;
+};
+
+/// Of even samples an error may take few passes.
+OpenEnded open_ended(bool is_even) {
+    return is_even ? OpenEnded{64, kPilotPasses, 2.0, 8.0} : OpenEnded{};
+}
+
 constexpr int kWithoutEnd = std::numeric_limits<int>::max();
 
 int ceil_div(int a, int b) {
@@ -39,22 +50,27 @@ bool is_open_ended(const RenderSettings& settings) {
     return settings.seconds || settings.target_error;
 }
 
-PassPlan plan_passes(const core::Scan& scan, const RenderSettings& settings) {
-    if (is_open_ended(settings)) return {kSamplesPerPilotPass, kWithoutEnd};
+PassPlan plan_passes(const core::Scan& scan, const RenderSettings& settings, bool is_even) {
+    if (is_open_ended(settings)) return {open_ended(is_even).samples_per_pass, kWithoutEnd};
     const int passes =
         std::max(kMinPasses, ceil_div(settings.samples, max_samples_per_pass(scan, settings)));
     const int per_pass = round_up_to_kinds(ceil_div(settings.samples, passes));
     return {per_pass, ceil_div(settings.samples, per_pass)};
 }
 
-std::optional<PassPlan> plan_after_pilot(const core::Scan& scan,
-                                         const RenderSettings& settings,
-                                         double fraction) {
-    const double expected = kSamplesPerPilotPass * kPilotPasses / fraction;
-    const double per_pass =
-        std::min<double>(expected / kPassesAfterPilot, max_samples_per_pass(scan, settings));
-    if (per_pass < kLeastGrowth * kSamplesPerPilotPass) return std::nullopt;
-    return PassPlan{round_up_to_kinds(static_cast<int>(per_pass)), kWithoutEnd};
+std::optional<PassPlan> plan_longer_passes(const core::Scan& scan,
+                                           const RenderSettings& settings,
+                                           bool is_even,
+                                           int samples_per_pass,
+                                           double fraction) {
+    const OpenEnded rules = open_ended(is_even);
+    const double now = samples_per_pass;
+    const double expected = now * kPilotPasses / fraction;
+    const double longer = std::min({expected / rules.passes,
+                                    rules.most_growth * now,
+                                    static_cast<double>(max_samples_per_pass(scan, settings))});
+    if (longer < rules.least_growth * now) return std::nullopt;
+    return PassPlan{round_up_to_kinds(static_cast<int>(longer)), kWithoutEnd};
 }
 
 }  // namespace renderer

@@ -20,15 +20,23 @@ struct PassPlan {
 bool is_open_ended(const RenderSettings& settings);
 
 /// The passes for the number of samples asked for, or a little more; of open-ended renders short
-/// ones without end, the first kPilotPasses of which tell how much there is to do.
-PassPlan plan_passes(const core::Scan& scan, const RenderSettings& settings);
+/// ones without end.
+///
+/// is_even   samples of a pass are spread so evenly that longer ones do much more
+PassPlan plan_passes(const core::Scan& scan, const RenderSettings& settings, bool is_even);
 
+/// After so many passes of a plan it is known how much there is to do.
 inline constexpr int kPilotPasses = 8;
 
-/// Passes that suit what is left to do once the pilot passes have done a fraction of it; none where
-/// short ones may go on, which would then not be worth dropping.
-std::optional<PassPlan> plan_after_pilot(const core::Scan& scan,
-                                         const RenderSettings& settings,
-                                         double fraction);
+/// Longer passes that suit what is left to do once kPilotPasses have done a fraction of it, at most
+/// 8 times as long: where samples are spread evenly, those may turn out to do much more. None where
+/// the passes may go on, which would then not be worth dropping.
+///
+/// samples_per_pass   of the passes that were made
+std::optional<PassPlan> plan_longer_passes(const core::Scan& scan,
+                                           const RenderSettings& settings,
+                                           bool is_even,
+                                           int samples_per_pass,
+                                           double fraction);
 
 }  // namespace renderer

@@ -88,7 +88,7 @@ class TileRender {
           work_(work),
           sensor_pairs_(sensor_pairs),
           tile_(tile),
-          plan_(samples() ? plan_passes(task.scan, task.settings) : PassPlan{0, 1}),
+          plan_(samples() ? plan_passes(task.scan, task.settings, work.is_even) : PassPlan{0, 1}),
           rule_(task.settings, plan_.num_passes, work.precomputed),
           sums_(tile.count, task.axes, channel_count(task.settings), task.settings.variance) {}
 
@@ -102,7 +102,7 @@ class TileRender {
 
     bool samples() const { return work_.tracer != nullptr; }
     double trace_round(const core::Progress& progress, RenderResult& result);
-    void lengthen_passes_after_pilot(double fraction);
+    void lengthen_passes(double fraction);
     Subpaths trace_subpaths(int first, int count) const;
     std::uint64_t run_passes(int first, int count);
     std::uint64_t run_pass(std::size_t pair,
@@ -118,7 +118,7 @@ class TileRender {
     StoppingRule rule_;
     HistogramSums sums_;
     core::Stopwatch watch_;
-    int first_ = 0;  ///< passes before it were a pilot
+    int first_ = 0;  ///< passes before it were shorter, and tell how long others should be
     int done_ = 0;   ///< passes since
     double paths_ = 0.0;
 };
@@ -129,7 +129,7 @@ void TileRender::run(const core::Progress& progress, RenderResult& result) {
         if (fraction >= 1.0) return;
         result.interrupted = progress.should_stop();
         if (result.interrupted) return;
-        lengthen_passes_after_pilot(fraction);
+        lengthen_passes(fraction);
     }
 }
 
@@ -145,13 +145,14 @@ double TileRender::trace_round(const core::Progress& progress, RenderResult& res
     return fraction;
 }
 
-void TileRender::lengthen_passes_after_pilot(double fraction) {
-    if (!is_open_ended(task_.settings) || first_ + done_ != kPilotPasses) return;
-    const auto longer = plan_after_pilot(task_.scan, task_.settings, fraction);
+void TileRender::lengthen_passes(double fraction) {
+    if (!is_open_ended(task_.settings) || done_ != kPilotPasses) return;
+    const auto longer = plan_longer_passes(
+        task_.scan, task_.settings, work_.is_even, plan_.samples_per_pass, fraction);
     if (!longer) return;
     plan_ = *longer;
     rule_ = {task_.settings, plan_.num_passes, work_.precomputed};
-    first_ = std::exchange(done_, 0);
+    first_ += std::exchange(done_, 0);
     sums_.reset();
 }
 

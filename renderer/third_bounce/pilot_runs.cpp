@@ -152,10 +152,21 @@ PilotRuns::PilotRuns(const Scene& scene,
       pilot_scan_(pilot_scan_for(scene, scan, axis.num_bins)),
       pilot_axis_(pilot_axis(axis)),
       target_(target),
+      most_work_s_(limits.work_s),
       subdivider_(scene, scan, axis, laser_spot_m2, limits) {}
 
 double PilotRuns::tolerance(int level) const {
     return target_ * std::exp2(level);
+}
+
+// CPU times as measured on the scenes of scenes/, cutting included.
+void PilotRuns::allow_work(double num_elements, std::size_t num_pairs) const {
+    constexpr double kPerElement_s = 3e-8;  // and pair
+    constexpr double kPerRay_s = 5e-8;
+    const double elements = integrated_ + num_elements * static_cast<double>(num_pairs);
+    const double work_s =
+        kPerElement_s * elements + kPerRay_s * static_cast<double>(cost_.num_rays);
+    if (work_s > most_work_s_) throw TooMuchWork{};
 }
 
 // The level chosen is often the one before the last tried, which missed the target.
@@ -213,6 +224,9 @@ const Pilot& PilotRuns::run(int level) {
     const core::Stopwatch watch;
     for_each_batch(level, [&](const ElementSet& batch) {
         if (pilot.num_elements > 0 && should_stop_ && should_stop_()) throw Stopped{};
+        const auto num_elements = static_cast<double>(batch.num_elements);
+        allow_work(num_elements, num_pairs());
+        integrated_ += num_elements * static_cast<double>(num_pairs());
         const core::Stopwatch integrating;
         integrator.integrate(batch, pilot.transient);
         pilot.num_elements += batch.num_elements;

@@ -79,6 +79,11 @@ class PilotRuns {
     struct Stopped {};
     void stop_when(std::function<bool()> should_stop) { should_stop_ = std::move(should_stop); }
 
+    /// Beyond the limit of work that all runs together may cost, this is thrown.
+    struct TooMuchWork {};
+    /// Throws it unless so many elements may still be integrated for each of so many pairs.
+    void allow_work(double num_elements, std::size_t num_pairs) const;
+
     /// Estimates how much light a pair has, at a level, for rules(); cheaper than run().
     void estimate_norm(int level);
 
@@ -105,6 +110,8 @@ class PilotRuns {
     core::WallScan pilot_scan_;
     core::TimeAxis pilot_axis_;
     double target_;
+    double most_work_s_;
+    double integrated_ = 0.0;  ///< elements times pairs
     SurfaceSubdivider subdivider_;
     std::deque<std::pair<int, ElementSet>> cuts_;  ///< the latest that are one batch
     double norm_per_pair_ = 0.0;

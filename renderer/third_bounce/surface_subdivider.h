@@ -8,16 +8,19 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
 namespace renderer {
 
-/// How many elements a cut may have.
+/// How many elements a cut may have, and all cuts together may cost.
 struct CutLimits {
     std::size_t in_all = 64'000'000;
     /// Or as many as the scene has facets. They take about 0.5 kB of memory each.
     std::size_t in_a_batch = 1'000'000;
+    /// CPU time to integrate them [s], as counted by PilotRuns.
+    double work_s = std::numeric_limits<double>::infinity();
 };
 
 /// Cuts the integrable hidden facets in front of a scan's points into elements.

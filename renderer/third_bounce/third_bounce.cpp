@@ -163,6 +163,8 @@ int Integrator::integrate(int level,
         part = first_part;
         if (scan && progress.should_stop()) return false;
         if (!scan) scan.emplace(scene_, scan_, axis_, pilots_.rules(level));
+        pilots_.allow_work(static_cast<double>(batch.num_elements) / batch.fraction,
+                           scan_.num_pairs());
         num_elements += batch.num_elements;
         const auto go_on = [&](double fraction) {
             progress.update(fraction_before + fraction * batch.fraction,
@@ -250,7 +252,12 @@ ThirdBounce integrate_third_bounce(const Scene& scene,
                                    const core::Progress& progress,
                                    const CutLimits& limits) {
     const core::Stopwatch watch;
-    ThirdBounce result = Integrator(scene, scan, axis, settings, limits).run(progress);
+    ThirdBounce result;
+    try {
+        result = Integrator(scene, scan, axis, settings, limits).run(progress);
+    } catch (const PilotRuns::TooMuchWork&) {
+        result.is_too_much = true;
+    }
     result.seconds = watch.seconds();
     return result;
 }

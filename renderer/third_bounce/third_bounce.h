@@ -22,6 +22,7 @@ struct ThirdBounce {
     std::uint64_t num_rays = 0;
     double tracing_seconds = 0.0;  ///< for aiming and tracing them, summed over all threads
     double seconds = 0.0;
+    bool is_too_much = false;  ///< the work, see CutLimits; there is no result
     bool interrupted = false;  ///< the remaining pairs got the coarsest level, see estimated_error
 };
 

@@ -201,21 +201,26 @@ TEST_P(Estimators, RenderTheSameOrNameOneThatCan) {
     }
 }
 
-// Paths by `auto` are made to fit the axis where little of the light does.
+// Paths by `auto` are made to fit the axis where that costs less.
 TEST(Auto, ConnectsByLengthWhereTheAxisIsNarrow) {
     for (Task& task : all_tasks()) {
         if (task.description.render.max_bounces != 4 || task.name == "four bounces") continue;
         for (const bool narrow : {true, false}) {
-            if (!narrow) task.description.time_axis = {{1.0, 0.5, 4}};
+            task.description.time_axis = {narrow ? core::TimeAxis{1.74, 0.002, 1}
+                                                 : core::TimeAxis{1.0, 0.5, 4}};
             const auto result = renderer::render(*task.scene,
                                                  task.scan,
                                                  {task.description.time_axis, {}},
                                                  task.description.render,
                                                  {});
             const auto expected = narrow ? Estimator::Ellipsoidal : Estimator::Path;
-            ASSERT_EQ(result.sources.size(), task.name.starts_with("narrow lobes") ? 3U : 2U);
+            const bool has_lobes = task.name.starts_with("narrow lobes");
+            ASSERT_EQ(result.sources.size(), has_lobes ? 3U : 2U);
             EXPECT_EQ(result.sources.front().estimator, Estimator::ThirdBounce) << task.name;
-            EXPECT_EQ(result.sources.back().estimator, expected) << task.name;
+            // Lobes in a narrow gate cost both about as much.
+            if (!narrow || !has_lobes) {
+                EXPECT_EQ(result.sources.back().estimator, expected) << task.name;
+            }
             EXPECT_EQ(result.sources.back().first_order, 4) << task.name;
         }
     }

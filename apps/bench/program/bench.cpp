@@ -4,6 +4,7 @@
 #include "apps/bench/command.h"
 #include "apps/bench/fit/fit.h"
 #include "apps/bench/reconstruct/reconstruct.h"
+#include "apps/bench/render/regret.h"
 #include "apps/bench/render/render.h"
 #include "apps/outcome.h"
 #include "apps/terminal.h"
@@ -17,18 +18,22 @@ namespace {
 
 constexpr int kQuickFitTrials = 3;
 constexpr int kQuickLargest = 64;
+constexpr int kQuickJobs = 12;
 
 struct AllArguments {
     BenchOutput output;
     bool quick = false;
 };
 
-// The three after each other, each with files of its own, and all in one JSON file to hold a later
+// The four after each other, each with files of its own, and all in one JSON file to hold a later
 // run against.
 void run_all(const AllArguments& arguments) {
     RenderBenchSettings render;
+    RegretBenchSettings regret;
     ReconstructBenchSettings reconstruct;
     if (arguments.quick) {
+        regret.jobs = kQuickJobs;
+        regret.most_seconds = 1.0;
         render.part = "curves";
         render.quick = true;
         reconstruct.repeats = 1;
@@ -36,7 +41,7 @@ void run_all(const AllArguments& arguments) {
     }
     FitBenchSettings fit;
     if (arguments.quick) fit.trials = kQuickFitTrials;
-    for (const char* name : {"render", "reconstruct", "fit"}) {
+    for (const char* name : {"render", "regret", "reconstruct", "fit"}) {
         read_earlier_run(arguments.output.against, name);  // before an hour has passed
     }
     core::Json all;
@@ -44,6 +49,7 @@ void run_all(const AllArguments& arguments) {
         all[name] = run_benchmark(arguments.output, name, benchmark);
     };
     add("render", [&](const core::Progress& progress) { return measure_render(render, progress); });
+    add("regret", [&](const core::Progress& progress) { return measure_regret(regret, progress); });
     add("reconstruct",
         [&](const core::Progress& progress) { return measure_reconstruct(reconstruct, progress); });
     add("fit", [&](const core::Progress& progress) { return measure_fit(fit, progress); });
@@ -60,19 +66,20 @@ void declare_all_benches(Command& command) {
 }
 
 constexpr CommandRow kAllBenches{"all",
-                                 "These three: render, reconstruct, fit",
+                                 "These four: render, regret, reconstruct, fit",
                                  "nlos bench all -o out/bench --quick",
                                  declare_all_benches};
 
 }  // namespace
 
 // Each stands in the file of its name.
-extern const CommandRow kRenderBench, kReconstructBench, kFitBench, kNoiseBench, kCoverageBench,
-    kWeightsBench, kLongRangeBench, kSequencesBench, kFieldBench;
+extern const CommandRow kRenderBench, kRegretBench, kReconstructBench, kFitBench, kNoiseBench,
+    kCoverageBench, kWeightsBench, kLongRangeBench, kSequencesBench, kFieldBench;
 
 void declare_bench(Command& command) {
     command.require_subcommand(1);
     for (const CommandRow* row : {&kRenderBench,
+                                  &kRegretBench,
                                   &kReconstructBench,
                                   &kFitBench,
                                   &kAllBenches,

@@ -35,38 +35,6 @@ renderer::Object object_of(core::TriangleMesh mesh, double albedo) {
     return object;
 }
 
-renderer::SceneGeometry random_geometry(core::Rng& rng) {
-    const auto between = [&](double low, double high) {
-        return low + (high - low) * rng.uniform();
-    };
-    // One by one: the order in which arguments are evaluated is not fixed.
-    const auto vector = [&](double most_xy, double min_z, double max_z) {
-        const double x = between(-most_xy, most_xy);
-        const double y = between(-most_xy, most_xy);
-        return Vec3(x, y, between(min_z, max_z));
-    };
-    renderer::SceneGeometry geometry;
-    const int num_spheres = 1 + static_cast<int>(2.0 * rng.uniform());
-    for (int i = 0; i < num_spheres; ++i) {
-        const Vec3 center = vector(0.3, 0.5, 0.9);
-        const double radius = between(0.05, 0.15);
-        const int cells = 6 * (1 + static_cast<int>(2.0 * rng.uniform()));
-        geometry.objects.push_back(
-            object_of(make_sphere_mesh(center, radius, cells), between(0.3, 1.0)));
-    }
-    const int num_sheets = 1 + static_cast<int>(3.0 * rng.uniform());
-    for (int i = 0; i < num_sheets; ++i) {
-        const Vec3 middle = vector(0.4, 0.3, 1.0);
-        const Vec3 half_u = vector(0.15, -0.05, 0.05);
-        const Vec3 half_v = vector(0.15, -0.05, 0.05);
-        geometry.objects.push_back(object_of(
-            make_grid_mesh(
-                1, [&](double u, double v) { return Vec3(middle + u * half_u + v * half_v); }),
-            between(0.1, 1.0)));
-    }
-    return geometry;
-}
-
 core::WallScan random_scan(core::Rng& rng, core::ScanPattern pattern) {
     const int side = pattern == core::ScanPattern::Exhaustive ? 4 : 8;
     renderer::SceneDescription description;
@@ -253,6 +221,38 @@ core::Json cost_of(const std::string& measurement,
 }
 
 }  // namespace
+
+renderer::SceneGeometry random_geometry(core::Rng& rng) {
+    const auto between = [&](double low, double high) {
+        return low + (high - low) * rng.uniform();
+    };
+    // One by one: the order in which arguments are evaluated is not fixed.
+    const auto vector = [&](double most_xy, double min_z, double max_z) {
+        const double x = between(-most_xy, most_xy);
+        const double y = between(-most_xy, most_xy);
+        return Vec3(x, y, between(min_z, max_z));
+    };
+    renderer::SceneGeometry geometry;
+    const int num_spheres = 1 + static_cast<int>(2.0 * rng.uniform());
+    for (int i = 0; i < num_spheres; ++i) {
+        const Vec3 center = vector(0.3, 0.5, 0.9);
+        const double radius = between(0.05, 0.15);
+        const int cells = 6 * (1 + static_cast<int>(2.0 * rng.uniform()));
+        geometry.objects.push_back(
+            object_of(make_sphere_mesh(center, radius, cells), between(0.3, 1.0)));
+    }
+    const int num_sheets = 1 + static_cast<int>(3.0 * rng.uniform());
+    for (int i = 0; i < num_sheets; ++i) {
+        const Vec3 middle = vector(0.4, 0.3, 1.0);
+        const Vec3 half_u = vector(0.15, -0.05, 0.05);
+        const Vec3 half_v = vector(0.15, -0.05, 0.05);
+        geometry.objects.push_back(object_of(
+            make_grid_mesh(
+                1, [&](double u, double v) { return Vec3(middle + u * half_u + v * half_v); }),
+            between(0.1, 1.0)));
+    }
+    return geometry;
+}
 
 core::Json bench_target_errors(int num_scenes, const core::Progress& progress) {
     core::Json rows = core::Json::array();

@@ -2,12 +2,18 @@
 #pragma once
 
 #include "renderer/core/progress.h"
+#include "renderer/core/random.h"
 #include "renderer/core/settings/json_fwd.h"
+#include "renderer/material/scene_geometry.h"
 
 #include <string>
 #include <vector>
 
 namespace apps {
+
+/// One or two spheres and up to three parallelograms, of any albedo, behind the wall of the default
+/// scene; they may touch and hide one another.
+renderer::SceneGeometry random_geometry(core::Rng& rng);
 
 /// `third_bounce` to 5, 2 and 1 %, a row for each, on random scenes of spheres and parallelograms
 /// that hide and touch one another, in confocal, single and exhaustive scans by turns.

@@ -129,12 +129,12 @@ TEST(AutoMethod, AddsPathsForNarrowLobesAndHigherOrders) {
     settings.samples = 400'000;
     settings.variance = true;
     settings.by_order = true;
-    settings.target_error = 5e-3;  // half of it for the integrator
+    settings.element_tolerance = 2e-3;
     const core::TimeAxis axis{1.0, 0.02, 60};
     const auto mixed = renderer::render(scene, scan, axis, settings, core::Progress{});
     ASSERT_EQ(mixed.sources.size(), 3U);
     settings.method = Estimator::Path;
-    settings.target_error.reset();
+    settings.element_tolerance.reset();
     settings.seed = 1;
     const auto paths = renderer::render(scene, scan, axis, settings, core::Progress{});
     ASSERT_EQ(paths.sources.size(), 1U);
