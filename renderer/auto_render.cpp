@@ -64,11 +64,11 @@ double squared_target(const RenderSettings& settings, const Plan& plan) {
 double worthwhile_work_s(const RenderTask& task, const Plan& plan, const SamplingCosts& alone) {
     constexpr double kHalf = 0.5;
     constexpr double kBesideIntegrator = 0.75;  // of the squared error
-    constexpr double kGainOfAverages = 10.0;
     const double allowed = squared_target(task.settings, plan);
-    const double beside = plan.least_cost / (plan.averages ? kGainOfAverages : 1.0);
-    const double gain = alone.least() - beside / kBesideIntegrator;
-    return std::isfinite(gain) ? std::max(0.0, kHalf * gain / allowed) : alone.least();
+    // What averages leave of it is not known yet, and often little.
+    const bool is_known = !plan.averages && std::isfinite(plan.least_cost);
+    const double beside = is_known ? plan.least_cost / kBesideIntegrator : 0.0;
+    return std::max(0.0, kHalf * (alone.least() - beside) / allowed);
 }
 
 // Beside paths, the integrator gets half of the error that may be left or a quarter of the time;

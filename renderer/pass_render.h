@@ -16,9 +16,8 @@ struct PassWork {
     /// larger scans are traced tile by tile, with the same result.
     double max_sums_bytes = 1e9;
 
-    bool is_even = false;  ///< see plan_passes()
-
     bool adds_short_paths = true;  ///< orders 1 and 2 of scans
+    bool is_even = false;          ///< see plan_passes()
 };
 
 /// Renders by Monte Carlo, in passes over all pairs of a tile, and adds orders 1 and 2 of scans,
