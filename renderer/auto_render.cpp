@@ -154,18 +154,26 @@ RenderResult sample(const RenderTask& task, const SamplingCosts& costs, double l
 }  // namespace
 
 RenderResult render_auto(const RenderTask& whole) {
+    constexpr double kSoon_s = 0.1;  // less than trial runs take
     RenderTask task = whole;
-    const auto left_out = leave_out_orders(task);
-    Plan plan;
-    if (left_out) plan.left_out = left_out->error;
-    const Surfaces surfaces = surfaces_of(task.scene);
-    plan.traces = surfaces.narrow_lobes || task.settings.max_bounces > 3;
-    plan.averages = plan.traces && may_average(task.settings, surfaces);
     const bool integrates = can_integrate(task);
     const bool has_choice = (!integrates || task.settings.target_error) &&
                             task.settings.max_bounces >= first_order(task.scan);
+    Plan plan;
     SamplingCosts alone;
     if (has_choice) alone = find_sampling_costs(task, ThirdBounceScope::All);
+    if (has_choice && task.settings.target_error &&
+        alone.least() < kSoon_s * squared_target(task.settings, plan)) {
+        return sample(task, alone, 0.0);
+    }
+    const auto left_out = leave_out_orders(task);
+    if (left_out) {
+        plan.left_out = left_out->error;
+        if (has_choice) alone = find_sampling_costs(task, ThirdBounceScope::All);
+    }
+    const Surfaces surfaces = surfaces_of(task.scene);
+    plan.traces = surfaces.narrow_lobes || task.settings.max_bounces > 3;
+    plan.averages = plan.traces && may_average(task.settings, surfaces);
     std::optional<RenderResult> result;
     if (integrates) {
         if (plan.traces) {

@@ -6,7 +6,10 @@
 #include "renderer/ellipsoidal/ellipsoidal_tracer.h"
 #include "renderer/path/path_tracer.h"
 
+#include <algorithm>
+#include <array>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -18,14 +21,16 @@ constexpr int kBatches = 4;                  // whose spread gives the variance
 constexpr int kSamplesPerBatch = 64;         // of a pair, more of few
 constexpr std::uint64_t kItem = 1ULL << 43;  // for random numbers of its own
 
-/// CPU time of a sample and of each of its rays [s], less what the many samples of a render gain by
-/// being spread evenly. Fitted to renders of scenes/letter, bars and corner, up to 3 and 5 bounces.
+/// CPU time of a sample, its first ray and each other [s], less what the many samples of a render
+/// gain by being spread evenly. First rays go in packets; others belong to longer walks. Fitted, to
+/// a factor of two, to renders of scenes/letter, bars, corner, box and room, up to 3 to 5 bounces.
 struct SamplingRate {
     double per_sample_s = 0.0;
-    double per_ray_s = 0.0;
+    double first_ray_s = 0.0;
+    double other_ray_s = 0.0;
 };
-constexpr SamplingRate kPaths{1e-8, 4.5e-8};
-constexpr SamplingRate kConnections{3e-7, 1e-7};
+constexpr SamplingRate kPaths{1e-8, 4.5e-8, 2e-7};
+constexpr SamplingRate kConnections{2e-7, 1e-7, 3e-7};
 
 /// Of batches of samples, summed over bins and pairs.
 struct SampledLight {
@@ -41,19 +46,23 @@ struct SampledLight {
     }
 };
 
+using SubpathsOfBatches = std::array<std::unique_ptr<const LightSubpaths>, kBatches>;
+
 SampledLight sample_pair(const RenderTask& task,
                          const Tracer& tracer,
                          const SensorPairs& sensor_pairs,
                          std::size_t pair,
                          int samples,
+                         const SubpathsOfBatches& subpaths,
                          const SamplingRate& rate) {
     std::vector<double> sums(static_cast<std::size_t>(task.axes.time.num_bins));
     std::vector<double> squares(sums.size());
     std::uint64_t num_rays = 0;
-    for (std::uint64_t batch = 0; batch < kBatches; ++batch) {
+    for (std::size_t batch = 0; batch < kBatches; ++batch) {
         PassHistogram histogram({task.axes.time, {}}, task.settings.gate, /*num_channels=*/1);
         core::Rng rng(0, kItem + pair, batch);
-        num_rays += tracer.trace(sensor_pairs, pair, samples, rng, histogram);
+        num_rays +=
+            tracer.trace(sensor_pairs, pair, samples, rng, histogram, subpaths[batch].get());
         histogram.drain(
             [&](std::size_t begin, std::span<const double> values) {
                 for (std::size_t i = 0; i < values.size(); ++i) {
@@ -70,8 +79,10 @@ SampledLight sample_pair(const RenderTask& task,
         light.variance += variance;
         light.squared += mean * mean - variance / kBatches;
     }
-    light.seconds =
-        samples * rate.per_sample_s + static_cast<double>(num_rays) / kBatches * rate.per_ray_s;
+    const double rays = static_cast<double>(num_rays) / kBatches;
+    const double first_rays = std::min(rays, static_cast<double>(samples));
+    light.seconds = samples * rate.per_sample_s + first_rays * rate.first_ray_s +
+                    (rays - first_rays) * rate.other_ray_s;
     return light;
 }
 
@@ -80,13 +91,18 @@ SampledLight sample_pairs(const RenderTask& task, const Tracer& tracer, const Sa
     const std::size_t all = task.scan.num_pairs();
     const std::size_t count = std::min(kPairs, all);
     const int samples = kSamplesPerBatch * static_cast<int>(kPairs / count);
+    SubpathsOfBatches subpaths;  // pixels share them
+    for (std::size_t batch = 0; batch < kBatches; ++batch) {
+        subpaths[batch] =
+            tracer.trace_subpaths(sensor_pairs, samples, core::Rng(0, kItem + all, batch));
+    }
     std::vector<SampledLight> lights(count);
     core::parallel_for(count, [&](std::size_t i) {
         // Spread out of step with the rows of a grid.
         const double position = core::lattice_point(static_cast<int>(i), 1, core::Vec2::Zero()).y();
         const std::size_t pair =
             count == all ? i : static_cast<std::size_t>(position * static_cast<double>(all));
-        lights[i] = sample_pair(task, tracer, sensor_pairs, pair, samples, rate);
+        lights[i] = sample_pair(task, tracer, sensor_pairs, pair, samples, subpaths, rate);
     });
     SampledLight sum;
     for (const SampledLight& light : lights) sum += light;

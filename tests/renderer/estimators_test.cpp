@@ -207,7 +207,7 @@ TEST(Auto, ConnectsByLengthWhereTheAxisIsNarrow) {
         if (task.description.render.max_bounces != 4 || task.name == "four bounces") continue;
         for (const bool narrow : {true, false}) {
             task.description.time_axis = {narrow ? core::TimeAxis{1.74, 0.002, 1}
-                                                 : core::TimeAxis{1.0, 0.5, 4}};
+                                                 : core::TimeAxis{1.0, 0.02, 100}};
             const auto result = renderer::render(*task.scene,
                                                  task.scan,
                                                  {task.description.time_axis, {}},
