@@ -57,10 +57,7 @@ std::vector<std::size_t> some_pairs(const core::Scan& scan) {
     const std::size_t count = scan.num_pairs();
     std::vector<std::size_t> pairs;
     for (std::size_t i = 0; i < std::min(kMaxPilotPairs, count); ++i) {
-        const double position = core::lattice_point(static_cast<int>(i), 1, core::Vec2::Zero()).y();
-        pairs.push_back(count <= kMaxPilotPairs
-                            ? i
-                            : static_cast<std::size_t>(position * static_cast<double>(count)));
+        pairs.push_back(spread_pair(i, kMaxPilotPairs, count));
     }
     scan.visit([&](const auto& kind) { add_corners(kind, pairs); });
     return pairs;
@@ -178,6 +175,12 @@ double round_up(double value) {
 }
 
 }  // namespace
+
+std::size_t spread_pair(std::size_t i, std::size_t count, std::size_t all) {
+    if (all <= count) return i;
+    const double position = core::lattice_point(static_cast<int>(i), 1, core::Vec2::Zero()).y();
+    return static_cast<std::size_t>(position * static_cast<double>(all));
+}
 
 bool LightRange::is_dark() const {
     return std::all_of(light.begin(), light.end(), [](double value) { return value == 0.0; });

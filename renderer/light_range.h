@@ -28,6 +28,10 @@ struct LightRange {
     double fraction_between(double begin_m, double end_m) const;
 };
 
+/// The number of a pair of a scan, the i-th of `count` that are spread over all of it, out of step
+/// with the rows of a grid; all of them where there are no more.
+std::size_t spread_pair(std::size_t i, std::size_t count, std::size_t all);
+
 /// Finds the range in a few hundredths of a second.
 ///
 /// returns   nothing when no order is rendered that has a vertex to sample

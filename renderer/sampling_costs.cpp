@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/sampling_costs.h"
 
-#include "renderer/core/sampling.h"
 #include "renderer/core/system/parallel.h"
 #include "renderer/ellipsoidal/ellipsoidal_tracer.h"
+#include "renderer/film/transient_accumulator.h"
+#include "renderer/light_range.h"
 #include "renderer/path/path_tracer.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <memory>
-#include <span>
+#include <numeric>
 #include <vector>
 
 namespace renderer {
@@ -32,58 +33,17 @@ struct SamplingRate {
 constexpr SamplingRate kPaths{1e-8, 4.5e-8, 2e-7};
 constexpr SamplingRate kConnections{2e-7, 1e-7, 3e-7};
 
-/// Of batches of samples, summed over bins and pairs.
+/// Of batches of samples of all pairs.
 struct SampledLight {
-    double variance = 0.0;  ///< of one batch
+    double variance = 0.0;  ///< of one batch, summed over bins
     double squared = 0.0;   ///< of the light, without what noise adds
     double seconds = 0.0;   ///< of one batch
-
-    SampledLight& operator+=(const SampledLight& other) {
-        variance += other.variance;
-        squared += other.squared;
-        seconds += other.seconds;
-        return *this;
-    }
 };
 
-using SubpathsOfBatches = std::array<std::unique_ptr<const LightSubpaths>, kBatches>;
-
-SampledLight sample_pair(const RenderTask& task,
-                         const Tracer& tracer,
-                         const SensorPairs& sensor_pairs,
-                         std::size_t pair,
-                         int samples,
-                         const SubpathsOfBatches& subpaths,
-                         const SamplingRate& rate) {
-    std::vector<double> sums(static_cast<std::size_t>(task.axes.time.num_bins));
-    std::vector<double> squares(sums.size());
-    std::uint64_t num_rays = 0;
-    for (std::size_t batch = 0; batch < kBatches; ++batch) {
-        PassHistogram histogram({task.axes.time, {}}, task.settings.gate, /*num_channels=*/1);
-        core::Rng rng(0, kItem + pair, batch);
-        num_rays +=
-            tracer.trace(sensor_pairs, pair, samples, rng, histogram, subpaths[batch].get());
-        histogram.drain(
-            [&](std::size_t begin, std::span<const double> values) {
-                for (std::size_t i = 0; i < values.size(); ++i) {
-                    sums[begin + i] += values[i];
-                    squares[begin + i] += values[i] * values[i];
-                }
-            },
-            [](std::size_t, std::span<const double>) {});
-    }
-    SampledLight light;
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-        const double mean = sums[i] / kBatches;
-        const double variance = (squares[i] - kBatches * mean * mean) / (kBatches - 1);
-        light.variance += variance;
-        light.squared += mean * mean - variance / kBatches;
-    }
-    const double rays = static_cast<double>(num_rays) / kBatches;
-    const double first_rays = std::min(rays, static_cast<double>(samples));
-    light.seconds = samples * rate.per_sample_s + first_rays * rate.first_ray_s +
-                    (rays - first_rays) * rate.other_ray_s;
-    return light;
+double seconds_of(double samples, double rays, const SamplingRate& rate) {
+    const double first_rays = std::min(rays, samples);
+    return samples * rate.per_sample_s + first_rays * rate.first_ray_s +
+           (rays - first_rays) * rate.other_ray_s;
 }
 
 SampledLight sample_pairs(const RenderTask& task, const Tracer& tracer, const SamplingRate& rate) {
@@ -91,23 +51,30 @@ SampledLight sample_pairs(const RenderTask& task, const Tracer& tracer, const Sa
     const std::size_t all = task.scan.num_pairs();
     const std::size_t count = std::min(kPairs, all);
     const int samples = kSamplesPerBatch * static_cast<int>(kPairs / count);
-    SubpathsOfBatches subpaths;  // pixels share them
+    std::array<std::unique_ptr<const LightSubpaths>, kBatches> subpaths;  // pixels share them
     for (std::size_t batch = 0; batch < kBatches; ++batch) {
         subpaths[batch] =
             tracer.trace_subpaths(sensor_pairs, samples, core::Rng(0, kItem + all, batch));
     }
-    std::vector<SampledLight> lights(count);
+    TransientAccumulator batches(
+        count, task.axes.time.num_bins, /*num_channels=*/1, /*variance=*/false);
+    std::vector<double> seconds(count);
     core::parallel_for(count, [&](std::size_t i) {
-        // Spread out of step with the rows of a grid.
-        const double position = core::lattice_point(static_cast<int>(i), 1, core::Vec2::Zero()).y();
-        const std::size_t pair =
-            count == all ? i : static_cast<std::size_t>(position * static_cast<double>(all));
-        lights[i] = sample_pair(task, tracer, sensor_pairs, pair, samples, subpaths, rate);
+        const std::size_t pair = spread_pair(i, kPairs, all);
+        std::uint64_t num_rays = 0;
+        for (std::size_t batch = 0; batch < kBatches; ++batch) {
+            PassHistogram histogram({task.axes.time, {}}, task.settings.gate, /*num_channels=*/1);
+            core::Rng rng(0, kItem + pair, batch);
+            num_rays +=
+                tracer.trace(sensor_pairs, pair, samples, rng, histogram, subpaths[batch].get());
+            batches.add_pass(i, histogram);
+        }
+        seconds[i] = seconds_of(samples, static_cast<double>(num_rays) / kBatches, rate);
     });
-    SampledLight sum;
-    for (const SampledLight& light : lights) sum += light;
-    sum.seconds *= static_cast<double>(all) / static_cast<double>(count);
-    return sum;
+    const auto norms = batches.squared_norms(kBatches, nullptr);
+    const double per_pair_s =
+        std::accumulate(seconds.begin(), seconds.end(), 0.0) / static_cast<double>(count);
+    return {norms.noise * kBatches, norms.signal, per_pair_s * static_cast<double>(all)};
 }
 
 }  // namespace

@@ -53,14 +53,14 @@ CountedMesh::CountedMesh(core::TriangleMesh mesh)
 }
 
 std::vector<double> CountedMesh::of_facets(const std::vector<double>& values) const {
-    if (facets_.empty() && mesh_.triangles.size() == num_facets_) return values;
+    if (facets_.empty()) return values;
     std::vector<double> counted;
     for (const std::uint32_t facet : facets_) counted.push_back(values[facet]);
     return counted;
 }
 
 MeshGradients CountedMesh::gradients_as_given(const MeshGradients& gradients) const {
-    if (facets_.empty() && mesh_.triangles.size() == num_facets_) return gradients;
+    if (facets_.empty()) return gradients;
     MeshGradients given = gradients;
     given.vertices.resize(num_vertices_);
     for (std::size_t i = 0; i < added_.size(); ++i) {

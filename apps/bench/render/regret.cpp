@@ -118,11 +118,10 @@ renderer::SceneDescription description_of(const RegretScene& scene, core::ScanPa
             overrides.push_back(fmt::format("scan.illumination_points=[{},{}]", side, side));
         }
     }
-    if (scene.make == nullptr) {
-        return read_bench_scene(fmt::format("scenes/{}/scene.json", scene.name), overrides);
-    }
-    // The letter's wall, scan and axis.
-    return read_bench_scene("scenes/letter/scene.json", overrides);
+    // What is made here has the letter's wall, scan and axis.
+    return read_bench_scene(
+        fmt::format("scenes/{}/scene.json", scene.make == nullptr ? scene.name : "letter"),
+        overrides);
 }
 
 /// A gate where a tenth or nine tenths of the light have arrived.
