@@ -5,11 +5,10 @@
 
 namespace core {
 
-/// Whether single precision moves a place by more than a micrometre: beyond 16 m or so.
+/// Whether single precision may move a place by more than a micrometre.
 inline bool needs_double(const Vec3& position) {
-    constexpr double kNotable_m = 1e-6;
-    const Vec3 single = position.cast<float>().cast<double>();
-    return (position - single).cwiseAbs().maxCoeff() > kNotable_m;
+    constexpr double kWithinAMicrometre_m = 16.0;  // 2^-24 of it are 0.95 micrometres
+    return position.cwiseAbs().maxCoeff() > kWithinAMicrometre_m;
 }
 
 }  // namespace core

@@ -16,6 +16,14 @@ constexpr std::size_t kNumBins = 16;
 constexpr int kNumKeys = 4;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// What differs by less is equal, and the first of equals is taken: rounding, which differs from one
+// place of the world to another, decides nothing.
+constexpr double kTie = 1e-6;
+
+bool is_above(double value, double other) {
+    return value > (1.0 + kTie) * other;
+}
+
 struct Part {
     std::span<std::uint32_t> set;
     double cost = 0.0;
@@ -49,6 +57,13 @@ double key_of(const Facet& facet, int key) {
     return facet.point(1.0 / 3.0, 1.0 / 3.0)[key];
 }
 
+// Longest side of the box of the facets' centroids [m].
+double size_of(std::span<const std::uint32_t> set, std::span<const Facet> facets) {
+    Eigen::AlignedBox3d box;
+    for (const std::uint32_t f : set) box.extend(facets[f].point(1.0 / 3.0, 1.0 / 3.0));
+    return box.sizes().maxCoeff();
+}
+
 // Range of a key over a set, in bins of equal width.
 struct KeyBins {
     int key = 0;
@@ -64,10 +79,12 @@ struct KeyBins {
             low = std::min(low, value);
             high = std::max(high, value);
         }
-        if (high > low) bins_per_unit = kNumBins / (high - low);
+        // Logarithms of areas are compared as they are, positions beside the size of what is cut.
+        const double unit = key == 3 ? 1.0 : size_of(set, facets);
+        if (high - low > kTie * unit) bins_per_unit = kNumBins / (high - low);
     }
     std::size_t bin_of(const Facet& facet) const {
-        const double bin = (key_of(facet, key) - low) * bins_per_unit;
+        const double bin = (key_of(facet, key) - low) * bins_per_unit + kNumBins * kTie;
         return std::min(static_cast<std::size_t>(bin), kNumBins - 1);
     }
 };
@@ -97,7 +114,7 @@ Cut best_cut(std::span<const std::uint32_t> set, std::span<const Facet> facets) 
         for (std::size_t i = 1; i < kNumBins; ++i) {
             if (below[i].empty || from[i].empty) continue;
             const Cut cut{bins, i, below[i].cost(), from[i].cost()};
-            if (cut.cost() < best.cost()) best = cut;
+            if (is_above(best.cost(), cut.cost())) best = cut;
         }
     }
     return best;
@@ -124,11 +141,12 @@ std::vector<std::span<std::uint32_t>> split_facets(std::span<std::uint32_t> set,
                                                    std::size_t max_parts,
                                                    bool halve) {
     std::vector<Part> parts{{set, 0.0}};
-    const auto order = [](const Part& part) { return std::pair(part.set.size() > 1, part.cost); };
+    // Only sets of several facets can be cut.
+    const auto cost_of = [](const Part& part) { return part.set.size() > 1 ? part.cost : -1.0; };
     while (parts.size() < max_parts) {
         const auto costliest =
             std::max_element(parts.begin(), parts.end(), [&](const Part& p, const Part& q) {
-                return order(p) < order(q);
+                return is_above(cost_of(q), cost_of(p));
             });
         if (costliest->set.size() < 2) break;
         const auto [below, above] = cut_in_two(costliest->set, facets, halve);

@@ -3,6 +3,7 @@
 
 #include "renderer/scene/load_geometry.h"
 #include "renderer/scene/scene_checks.h"
+#include "renderer/scene/weld.h"
 
 #include <algorithm>
 #include <limits>
@@ -47,6 +48,11 @@ SceneGeometry with_wall(SceneGeometry geometry, const core::Scan& scan, const Re
     if (relay_wall_mesh(geometry) == nullptr && rectangle_carries_scan(wall, scan.wall())) {
         geometry.objects.push_back(rectangle_object(wall));
     }
+    return geometry;
+}
+
+SceneGeometry welded(SceneGeometry geometry) {
+    for (Object& object : geometry.objects) weld_vertices(object.mesh);
     return geometry;
 }
 
@@ -104,7 +110,7 @@ Scene::Scene(SceneGeometry geometry, const core::Scan& scan, const RelayWall& wa
     : Scene(with_wall(std::move(geometry), scan, wall), scan.path_ends(), wall.albedo) {}
 
 Scene::Scene(SceneGeometry geometry, const std::vector<Vec3>& path_ends, double wall_albedo)
-    : geometry_(std::move(geometry)),
+    : geometry_(welded(std::move(geometry))),
       coincident_faces_(leave_out_covered_faces(geometry_.objects,
                                                 FacePrecedence(geometry_.objects),
                                                 coincidence_m(geometry_.objects, path_ends))),
@@ -121,12 +127,7 @@ Scene::Scene(SceneGeometry geometry, const std::vector<Vec3>& path_ends, double 
 
 Scene Scene::moved(const Vec3& way, const core::Scan& scan) const {
     SceneGeometry geometry = geometry_;
-    for (Object& object : geometry.objects) {
-        for (Vec3& vertex : object.mesh.vertices) vertex += way;
-        object.world_from_node.pretranslate(way);
-        for (NodeGroup& group : object.groups) group.world_from_node.pretranslate(way);
-    }
-    for (Camera& camera : geometry.cameras) camera.position += way;
+    geometry.move(way);
     Scene scene(std::move(geometry), scan.path_ends(), wall_albedo_);
     scene.coincident_faces_ = coincident_faces_;
     scene.stated_rounding_m_ = stated_rounding_m_;

@@ -41,11 +41,14 @@ struct LongestEdge {
     double squared = 0.0;
 };
 
+// Of edges that are equal but for rounding the first: which one rounding makes longer would depend
+// on where in the world a triangle is.
 LongestEdge longest_edge(const SurfaceElement& element) {
+    constexpr double kTie = 1e-9;
     LongestEdge longest;
     for (std::size_t i = 0; i < 3; ++i) {
         const double squared = (element.corners[(i + 1) % 3] - element.corners[i]).squaredNorm();
-        if (squared > longest.squared) longest = {i, squared};
+        if (squared > (1.0 + kTie) * longest.squared) longest = {i, squared};
     }
     return longest;
 }

@@ -63,7 +63,7 @@ std::vector<Target> render_targets(const core::Json& figures) {
             ">= 0.95 of them",
             fraction("met"),
             fraction("met") >= 0.95);
-        add("random scenes five times below, a coarser cut left",
+        add("random scenes five times below where a coarser cut meets it",
             "<= 0.05 of them",
             fraction("is_far_below"),
             fraction("is_far_below") <= 0.05);

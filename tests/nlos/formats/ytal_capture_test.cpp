@@ -53,6 +53,18 @@ TEST(YtalCapture, PointListsSurviveTheRoundTrip) {
     }
 }
 
+TEST(YtalCapture, PlacesFarFromTheOriginSurviveTheRoundTrip) {
+    for (const double kilometres : {0.1, 1.0, 1000.0}) {
+        const core::Vec3 way = 1000.0 * kilometres * core::Vec3(0.49999, -1.0, 0.7);
+        Capture capture = example_capture(ScanPattern::Single);
+        capture.scan = core::moved(capture.scan, way);
+        capture.scan.wall().opl_origin = core::OplOrigin::Device;
+        capture.scan.wall().laser_position = way + core::Vec3(-0.5, 0.1, 1.0 / 3.0);
+        capture.scan.wall().detector_position = way + core::Vec3(0.7, 0.125, 1.0);
+        expect_same(CaptureFile(capture).read(), capture);
+    }
+}
+
 TEST(YtalCapture, ImagesSurviveTheRoundTrip) {
     const Capture capture = test_support::example_image();
     const CaptureFile file(capture);

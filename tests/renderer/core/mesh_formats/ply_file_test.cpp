@@ -51,6 +51,14 @@ TEST(PlyFile, MeshesSurviveTheRoundTrip) {
     EXPECT_EQ(read.triangles, example_mesh().triangles);
 }
 
+TEST(PlyFile, PlacesFarFromTheOriginSurviveTheRoundTrip) {
+    TriangleMesh mesh = example_mesh();
+    for (auto& vertex : mesh.vertices) vertex += core::Vec3(1e6 / 3.0, -1e6, 7e5);
+    const TemporaryFolder folder;
+    write_ply(folder.file("a.ply"), mesh);
+    EXPECT_EQ(read_mesh_file(folder.file("a.ply")).mesh.vertices, mesh.vertices);
+}
+
 TEST(PlyFile, EmptyCloudsSurviveTheRoundTrip) {
     const TemporaryFolder folder;
     write_ply(folder.file("a.ply"), PointCloud{});
