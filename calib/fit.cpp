@@ -2,6 +2,7 @@
 #include "calib/fit.h"
 
 #include "calib/fit/fit_driver.h"
+#include "calib/fit/recentred_fit.h"
 #include "calib/fit/solution.h"
 #include "calib/fit/stage_solver.h"
 #include "calib/model/scene_model.h"
@@ -295,9 +296,7 @@ void widen_sigma(const FitDriver& driver,
         photons));
 }
 
-}  // namespace
-
-FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
+FitResult fit_near_origin(const FitInput& input, const core::Progress& progress) {
     const core::Stopwatch watch;
     const Stages stages(input.settings, progress);
     const core::Progress preparing = stages.starts();
@@ -338,6 +337,16 @@ FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
     }
     warn_of_ambiguity(driver, candidates, result);
     result.seconds = watch.seconds();
+    return result;
+}
+
+}  // namespace
+
+FitResult fit_scene(const FitInput& input, const core::Progress& progress) {
+    const std::optional<Vec3> way = way_to_origin(input);
+    if (!way) return fit_near_origin(input, progress);
+    FitResult result = fit_near_origin(moved(input, *way), progress);
+    move(result, -*way);
     return result;
 }
 

@@ -4,6 +4,7 @@
 #include "calib/adjoint/pair_evaluator.h"
 #include "renderer/core/error.h"
 #include "renderer/core/system/parallel.h"
+#include "renderer/recentred.h"
 
 #include <fmt/core.h>
 
@@ -44,6 +45,17 @@ void check_mesh(const core::TriangleMesh& mesh, const std::vector<double>& albed
 }
 
 // Of [pair][item]; empty when there is nothing.
+// Light and gradients are the same there, and rounding is small.
+void move_to_origin(core::TriangleMesh& mesh, core::WallScan& scan) {
+    Eigen::AlignedBox3d box;
+    for (const core::Vec3& vertex : mesh.vertices) box.extend(vertex);
+    for (const core::Vec3& point : scan.path_ends()) box.extend(point);
+    const auto way = renderer::way_to_origin(box.center(), box.sizes().maxCoeff());
+    if (!way) return;
+    for (core::Vec3& vertex : mesh.vertices) vertex += *way;
+    scan = core::moved(core::Scan(scan), *way).wall();
+}
+
 template <class T>
 std::span<T> part_of_pair(std::span<T> all, std::size_t pair, std::size_t num_items) {
     return all.empty() ? all : all.subspan(pair * num_items, num_items);
@@ -85,9 +97,12 @@ ThirdBounceVjp::ThirdBounceVjp(core::TriangleMesh mesh,
                                const core::TimeAxis& axis,
                                const ThirdBounceVjpSettings& settings,
                                const core::Progress& progress)
-    : counted_((check_mesh(mesh, albedo), std::move(mesh))),
+    : counted_((check_mesh(mesh, albedo),
+                core::validate(scan, kWhere),
+                move_to_origin(mesh, scan),
+                std::move(mesh))),
       albedo_(counted_.of_facets(albedo)),
-      scan_((core::validate(scan, kWhere), std::move(scan))),
+      scan_(std::move(scan)),
       axis_(axis),
       settings_(settings),
       tree_(counted_.mesh()) {

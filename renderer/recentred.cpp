@@ -15,11 +15,10 @@ struct RecentredFrames {
 
 }  // namespace
 
-std::optional<core::Vec3> way_to_origin(const Scene& scene) {
+std::optional<core::Vec3> way_to_origin(const core::Vec3& center, double half_size_m) {
     // Scenes as far as that beside their size cost six of 53 bits.
     constexpr double kFar = 64.0;
-    const core::Vec3& center = scene.rays().origin();
-    if (center.cwiseAbs().maxCoeff() <= kFar * scene.rays().half_size_m()) return std::nullopt;
+    if (center.cwiseAbs().maxCoeff() <= kFar * half_size_m) return std::nullopt;
     return -center;
 }
 
@@ -31,7 +30,8 @@ FrameRenderer make_recentred_frame_renderer(const core::Scan& scan,
     return [frames, &scan, settings, make](
                const Frame& frame, const core::Scan& frame_scan, const core::Progress& progress) {
         if (!frames->render) {
-            frames->way = way_to_origin(*frame.scene);
+            const RayCaster& rays = frame.scene->rays();
+            frames->way = way_to_origin(rays.origin(), rays.half_size_m());
             frames->scan = frames->way ? core::moved(scan, *frames->way) : scan;
             frames->render = make(frames->scan, settings);
         }

@@ -23,7 +23,7 @@ RenderResult render(const Scene& scene,
                     const core::Progress& progress) {
     const RenderTask task{scene, scan, axes, settings, progress};
     require_possible(task);
-    const auto way = way_to_origin(scene);
+    const auto way = way_to_origin(scene.rays().origin(), scene.rays().half_size_m());
     if (!way) return render_here(task);
     const core::Scan moved_scan = core::moved(scan, *way);
     RenderResult result =

@@ -54,6 +54,9 @@ struct SceneGeometry {
     std::vector<Object> objects;          ///< an instanced mesh appears once per instance
     std::vector<Camera> cameras;          ///< perspective ones
     std::vector<std::string> warnings{};  ///< what the file says that is not modelled, for people
+
+    /// Moves all of it.
+    void move(const core::Vec3& way);
 };
 
 }  // namespace renderer

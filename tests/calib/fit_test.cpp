@@ -56,6 +56,34 @@ TEST(Fit, FindsThePoseOfNoiseFreeData) {
     EXPECT_NEAR(fit.estimates["ambient"].value, 0.5, 5e-3);
 }
 
+// Where rounding of the coordinates alone is 0.1 um, against sigmas of half a millimetre.
+TEST(Fit, FindsTheSameAThousandKilometresAway) {
+    const auto capture = counted(expected_capture(truth(), confocal_grid(6), 500.0, 0.5), "far");
+    calib::FitInput input = fit_input(capture, displaced());
+    const calib::FitResult here = calib::fit_scene(input, {});
+    const Vec3 way(4e5, -1e6, 7e5);
+    input.capture.scan = core::moved(input.capture.scan, way);
+    input.geometry.move(way);
+    const calib::FitResult there = calib::fit_scene(input, {});
+    ASSERT_TRUE(here.converged && there.converged);
+    const calib::FittedObject& expected = here.objects.front();
+    const calib::FittedObject& object = there.objects.front();
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(object.position_m[i] - way[i],
+                    expected.position_m[i],
+                    0.05 * expected.position_sigma_m[i]);
+        EXPECT_NEAR(object.position_sigma_m[i],
+                    expected.position_sigma_m[i],
+                    0.02 * expected.position_sigma_m[i]);
+    }
+    EXPECT_LT((there.geometry.objects[0].mesh.vertices[0] - way -
+               here.geometry.objects[0].mesh.vertices[0])
+                  .norm(),
+              1e-4);
+    EXPECT_NEAR(there.deviance, here.deviance, 0.1);
+    EXPECT_EQ(there.warnings, here.warnings);
+}
+
 TEST(Fit, FindsPoseAndAlbedoOfRadianceWithoutAmbientLight) {
     core::Capture capture = expected_capture(truth(), confocal_grid(8), 1.0, 0.0);
     capture.unit = core::TransientUnit::Radiance;

@@ -74,6 +74,29 @@ renderer::Object sphere_object(const Vec3& center, double radius, int subdivisio
     return object;
 }
 
+core::TriangleMesh seamed_sphere(const Vec3& center, double radius, int cells) {
+    core::TriangleMesh mesh;
+    const int columns = 2 * cells;
+    for (int row = 0; row <= cells; ++row) {
+        const double polar = core::kPi * row / cells;
+        for (int column = 0; column <= columns; ++column) {
+            const double turn = core::kPi * column / cells;
+            mesh.vertices.push_back(center + radius * Vec3(std::sin(polar) * std::cos(turn),
+                                                           std::sin(polar) * std::sin(turn),
+                                                           std::cos(polar)));
+        }
+    }
+    for (int row = 0; row < cells; ++row) {
+        for (int column = 0; column < columns; ++column) {
+            const auto a = static_cast<std::uint32_t>(row * (columns + 1) + column);
+            const auto below = a + static_cast<std::uint32_t>(columns) + 1;
+            if (row > 0) mesh.triangles.push_back({a, below, a + 1});
+            if (row + 1 < cells) mesh.triangles.push_back({a + 1, below, below + 1});
+        }
+    }
+    return mesh;
+}
+
 core::WallPoints wall_points(const std::vector<Vec3>& positions) {
     core::WallPoints points;
     points.positions = positions;

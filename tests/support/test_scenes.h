@@ -34,6 +34,10 @@ renderer::Object sphere_object(const core::Vec3& center,
                                int subdivisions,
                                double albedo);
 
+/// A sphere of circles of longitude, which meet in a seam of vertices that are there twice, apart
+/// by the sine of a full turn: `2 cells (cells - 1) + 2` positions.
+core::TriangleMesh seamed_sphere(const core::Vec3& center, double radius, int cells);
+
 /// Points on the wall z = 0 with normal +z.
 core::WallPoints wall_points(const std::vector<core::Vec3>& positions);
 

@@ -128,7 +128,7 @@ PathGeometry corrected_geometry(const core::Capture& capture,
     if (correction.origin) scan.opl_origin = *correction.origin;
 
     PathGeometry geometry;
-    geometry.world_from_wall = derive_wall_frame(scan).world_from_wall;
+    const core::Transform wall_from_world = derive_wall_frame(scan).world_from_wall.inverse();
     const double bin_m = correction.length_factor * axis.bin_width_m;
     const double start_m =
         (correction.keeps_start ? 1.0 : correction.length_factor) * axis.opl_start_m +
@@ -149,8 +149,8 @@ PathGeometry corrected_geometry(const core::Capture& capture,
         }
         const bool is_exhaustive = scan.pattern == core::ScanPattern::Exhaustive;
         const std::size_t pair = is_exhaustive ? lit * scan.sensing.size() + sensed : sensed;
-        geometry.illumination.push_back(scan.illumination.positions[lit]);
-        geometry.sensing.push_back(scan.sensing.positions[sensed]);
+        geometry.illumination.push_back(wall_from_world * scan.illumination.positions[lit]);
+        geometry.sensing.push_back(wall_from_world * scan.sensing.positions[sensed]);
         geometry.segments_m.push_back(scan.device_segments_m(pair));
     }
     return geometry;

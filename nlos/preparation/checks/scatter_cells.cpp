@@ -24,9 +24,9 @@ constexpr std::size_t kMostHalved = 600;
 constexpr std::size_t kBlock = 256;      // cells at once
 constexpr std::size_t kPairsAtOnce = 8;  // pairs at once: sums of one would wait for each other
 
-Vec3 position_of(const Cell& cell, const core::Transform& world_from_wall) {
+Vec3 position_of(const Cell& cell) {
     const double z = std::sqrt(std::max(1e-4, 1.0 - cell.y() * cell.y() - cell.z() * cell.z()));
-    return world_from_wall * Vec3(cell.x() * cell.y(), cell.x() * cell.z(), cell.x() * z);
+    return Vec3(cell.x() * cell.y(), cell.x() * cell.z(), cell.x() * z);
 }
 
 double farthest_m(const ScatterCells& cells) {
@@ -40,17 +40,16 @@ struct PathSegments {
     Eigen::ArrayXf length;
     Eigen::ArrayXf weight;  ///< cosine with the wall's normal over the squared length
 
-    PathSegments(const Eigen::ArrayX3f& positions, const Vec3& point, const Vec3& normal)
+    PathSegments(const Eigen::ArrayX3f& positions, const Vec3& point)
         : length(positions.rows()), weight(positions.rows()) {
         const Eigen::Vector3f from = point.cast<float>();
-        const Eigen::Vector3f up = normal.cast<float>();
         for (Eigen::Index i = 0; i < length.size(); ++i) {
             const float dx = positions(i, 0) - from.x();
             const float dy = positions(i, 1) - from.y();
             const float dz = positions(i, 2) - from.z();
             const float squared = dx * dx + dy * dy + dz * dz;
             length[i] = std::sqrt(squared);
-            weight[i] = std::abs(up.x() * dx + up.y() * dy + up.z() * dz) / (squared * length[i]);
+            weight[i] = std::abs(dz) / (squared * length[i]);
         }
     }
 };
@@ -132,7 +131,7 @@ ScatterTransport::ScatterTransport(const HistogramSample& sample,
       reach_(num_cells_) {
     Eigen::ArrayX3f positions(num_cells_, 3);
     for (std::size_t i = 0; i < num_cells_; ++i) {
-        const Vec3 position = position_of(cells.centers[i], geometry.world_from_wall) / unit_m_;
+        const Vec3 position = position_of(cells.centers[i]) / unit_m_;
         positions.row(static_cast<Eigen::Index>(i)) = position.transpose().array().cast<float>();
     }
     const auto size = static_cast<Eigen::Index>(num_cells_);
@@ -150,11 +149,10 @@ void ScatterTransport::fill(std::size_t pair,
                             const PathGeometry& geometry,
                             const Eigen::ArrayX3f& positions,
                             Eigen::ArrayXf& reach) {
-    const Vec3 normal = geometry.world_from_wall.linear().col(2);
-    const PathSegments out(positions, geometry.illumination[pair] / unit_m_, normal);
+    const PathSegments out(positions, geometry.illumination[pair] / unit_m_);
     std::optional<PathSegments> other;
     if (geometry.illumination[pair] != geometry.sensing[pair]) {
-        other.emplace(positions, geometry.sensing[pair] / unit_m_, normal);
+        other.emplace(positions, geometry.sensing[pair] / unit_m_);
     }
     const PathSegments& back = other ? *other : out;
     const auto before =

@@ -11,12 +11,11 @@ namespace nlos {
 
 /// Where the light of a sample's histograms went, as a hypothesis has it.
 struct PathGeometry {
-    std::vector<core::Vec3> illumination;  ///< point of each pair [m]
-    std::vector<core::Vec3> sensing;       ///< point of each pair [m]
+    std::vector<core::Vec3> illumination;  ///< point of each pair, in the wall's frame [m]
+    std::vector<core::Vec3> sensing;       ///< the same
     std::vector<double> segments_m;        ///< length of the device segments in each pair's axis
-    core::Transform world_from_wall = core::Transform::Identity();  ///< z towards the hidden side
-    double opl_start_m = 0.0;                                       ///< of the sample's bin 0
-    double bin_width_m = 0.0;  ///< of the sample; negative: time runs backwards
+    double opl_start_m = 0.0;              ///< of the sample's bin 0
+    double bin_width_m = 0.0;              ///< of the sample; negative: time runs backwards
 };
 
 /// Cells of the space before the wall, in polar coordinates around the middle of its points.

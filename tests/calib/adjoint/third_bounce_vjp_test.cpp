@@ -60,6 +60,29 @@ TEST(ThirdBounceVjp, OneAndSevenThreadsGiveTheSameBytes) {
     EXPECT_EQ(one.second.albedo, seven.second.albedo);
 }
 
+// Coordinates there are rounded by 1e-10 m.
+TEST(ThirdBounceVjp, IsTheSameAThousandKilometresAway) {
+    for (std::uint64_t number = 0; number < 4; ++number) {
+        const GradientCase here(number);
+        GradientCase there = here;
+        const Vec3 way(4e5, -1e6, 7e5);
+        for (Vec3& vertex : there.shapes.mesh.vertices) vertex += way;
+        there.scan = core::moved(core::Scan(here.scan), way).wall();
+        const auto expected_light = here.vjp(here.shapes).histograms();
+        const auto light = there.vjp(there.shapes).histograms();
+        EXPECT_LT(test_support::relative_l2(std::span<const double>(light), expected_light), 1e-6);
+        const MeshGradients expected = here.gradients();
+        const MeshGradients gradients = there.gradients();
+        double difference = 0.0;
+        double all = 0.0;
+        for (std::size_t v = 0; v < expected.vertices.size(); ++v) {
+            difference += (gradients.vertices[v] - expected.vertices[v]).squaredNorm();
+            all += expected.vertices[v].squaredNorm();
+        }
+        EXPECT_LT(std::sqrt(difference / all), 1e-5) << "case " << number;
+    }
+}
+
 TEST(ThirdBounceVjp, FacetsWithoutAreaCountForNothing) {
     const GradientCase example(1);
     GradientCase more = example;
