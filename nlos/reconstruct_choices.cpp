@@ -2,6 +2,7 @@
 #include "nlos/reconstruct_choices.h"
 
 #include "nlos/methods/virtual_wave.h"
+#include "nlos/preparation/blind_response.h"
 #include "nlos/preparation/checks/capture_check.h"
 #include "nlos/preparation/direct_response.h"
 #include "nlos/preparation/wiener_snr.h"
@@ -18,6 +19,7 @@ namespace nlos {
 namespace {
 
 constexpr std::size_t kDefaultColumns = 64;
+constexpr int kTaperBins = 6;           // after merging
 constexpr double kBinOfResponse = 0.4;  // standard deviations: widens it by less than 1 %
 
 /// As many bins as keep the range they cover within a quarter of the wall points' distance: finer
@@ -117,6 +119,10 @@ void leave_out_background(const PreparedCapture& prepared,
     }
     if (signal) {
         plan.ambient_per_bin = std::move(signal->ambient_per_bin);
+        plan.taper.begin_bin = signal->begin_bin;
+        const int taper_bins = kTaperBins * plan.merge_bins;
+        if (signal->has_background) plan.taper.opening_bins = taper_bins;
+        if (signal->reaches_the_end) plan.taper.end_bins = taper_bins;
         const int end = (signal->end_bin + plan.merge_bins - 1) / plan.merge_bins;
         if (!settings.volume.z_range_m) {
             plan.num_bins = std::clamp(end, std::min(kMinBins, plan.num_bins), plan.num_bins);
@@ -127,11 +133,9 @@ void leave_out_background(const PreparedCapture& prepared,
     }
 }
 
-/// Fills in merge_bins, ambient, z_range_m and, where a method has it, snr, and says what becomes
-/// of the histograms.
+/// Fills in merge_bins, ambient and z_range_m, and says what becomes of the histograms.
 PreparationPlan choose_preparation(const PreparedCapture& prepared, ReconstructSettings& settings) {
     const core::TimeAxis& axis = prepared.time_axis;
-    const bool is_counts = prepared.unit == core::TransientUnit::Counts;
     if (!settings.merge_bins) settings.merge_bins = default_merge_bins(prepared, settings);
     PreparationPlan plan;
     plan.observed = prepared.observed;
@@ -153,13 +157,65 @@ PreparationPlan choose_preparation(const PreparedCapture& prepared, ReconstructS
                                                           static_cast<std::size_t>(axis.num_bins),
                                                           settings.response_floor);
     }
-    if (method.has_wiener_filter && !settings.snr) {
-        settings.snr =
-            is_counts
-                ? wiener_snr(prepared.scan, axis, prepared.transient(), plan, settings.falloff)
-                : kNoiselessSnr;
-    }
     return plan;
+}
+
+/// Tells a response from the histograms and takes it off, where that is asked for or, as none is
+/// stated, needed.
+///
+/// returns   what was found, for people; nothing where nothing is taken off
+std::optional<std::string> take_off_blind_response(const PreparedCapture& prepared,
+                                                   ReconstructSettings& settings,
+                                                   PreparationPlan& plan) {
+    BlindDeconvolution& choice = settings.blind_deconvolution;
+    const bool is_open = choice == BlindDeconvolution::Auto;
+    const bool is_stated = core::is_given(settings.response) || settings.response.is_none;
+    core::require(choice != BlindDeconvolution::On || !core::is_given(settings.response),
+                  "blind_deconvolution",
+                  "on with a response",
+                  "on where no response is known; response=none forgets that of the capture");
+    core::require(choice != BlindDeconvolution::On || !traits_of(settings).explains_response,
+                  "blind_deconvolution",
+                  fmt::format("on with method {}", core::enum_name(settings.method)),
+                  "auto or off for methods that explain a response; response states one");
+    const bool is_short = prepared.time_axis.num_bins < kMinBins;
+    core::require(choice != BlindDeconvolution::On || !is_short,
+                  "blind_deconvolution",
+                  fmt::format("on with {} bins", prepared.time_axis.num_bins),
+                  fmt::format("on for {} bins or more", kMinBins));
+    if (choice == BlindDeconvolution::Auto) choice = BlindDeconvolution::Off;
+    const bool may_tell = !is_stated && !is_short && prepared.wall.grid.has_value();
+    if (is_open && (!may_tell || traits_of(settings).explains_response)) {
+        return std::nullopt;
+    }
+    if (!is_open && choice == BlindDeconvolution::Off) return std::nullopt;
+    const core::TimeAxis& axis = prepared.time_axis;
+    const MeanSpectrum spectrum = mean_spectrum(prepared.transient(), plan, axis.bin_width_m);
+    if (is_open) {
+        const auto& pitch_m = prepared.wall.grid->pitch_m;
+        const auto slope = spectral_slope(spectrum, std::min(pitch_m[0], pitch_m[1]));
+        if (!slope || *slope < kSlopeOfResponse) return std::nullopt;
+        choice = BlindDeconvolution::On;
+    }
+    const BlindResponse response =
+        find_blind_response(spectrum, static_cast<std::size_t>(axis.num_bins));
+    plan.deconvolution = response.deconvolution;
+    return describe(response);
+}
+
+/// The signal to noise ratio of methods that have a Wiener filter, unless set. That of a blind
+/// response has left out what is noise.
+void choose_snr(const PreparedCapture& prepared,
+                const PreparationPlan& plan,
+                ReconstructSettings& settings) {
+    if (!traits_of(settings).has_wiener_filter || settings.snr) return;
+    const bool tells_noise = prepared.unit == core::TransientUnit::Counts &&
+                             settings.blind_deconvolution != BlindDeconvolution::On;
+    settings.snr =
+        tells_noise
+            ? wiener_snr(
+                  prepared.scan, prepared.time_axis, prepared.transient(), plan, settings.falloff)
+            : kNoiselessSnr;
 }
 
 /// What the method explains of the histograms instead of having it taken off.
@@ -294,6 +350,8 @@ ReconstructionPlan choose(const core::Capture& capture, Reconstruction& result) 
     result.resolution_m = data_resolution_m(plan.prepared, settings.response);
     choose_and_enter_method(capture, plan.prepared, result);
     plan.preparation = choose_preparation(plan.prepared, settings);
+    const auto blind = take_off_blind_response(plan.prepared, settings, plan.preparation);
+    choose_snr(plan.prepared, plan.preparation, settings);
     plan.time_axis = plan.preparation.prepared_axis(plan.prepared.time_axis);
     plan.observed = prepared_observed(plan.preparation);
     core::simplify(plan.observed, plan.time_axis.num_bins);
@@ -316,6 +374,7 @@ ReconstructionPlan choose(const core::Capture& capture, Reconstruction& result) 
         has_range ? plan.time_axis.opl_end_m() : dark_from_m(plan.prepared, plan.preparation);
     result.warnings = warnings_of(capture, plan, settings);
     if (beside) result.warnings.push_back(*beside);
+    if (blind) result.warnings.push_back(*blind);
     return plan;
 }
 

@@ -2,6 +2,7 @@
 #include "nlos/preparation/histogram_preparation.h"
 
 #include "renderer/core/system/parallel.h"
+#include "renderer/core/types.h"
 
 #include <algorithm>
 #include <array>
@@ -182,6 +183,21 @@ class SegmentedTransient {
     double variance_per_light_ = 1.0;
 };
 
+/// The bins of a histogram that were recorded: those observed, or those from the first that is not
+/// 0 on.
+core::BinRange recorded_bins(std::span<const float> histogram,
+                             const PreparationPlan& plan,
+                             std::size_t pair) {
+    if (plan.observed) return (*plan.observed)[pair];
+    const auto first = std::ranges::find_if(histogram, [](float value) { return value != 0.0F; });
+    return {static_cast<int>(first - histogram.begin()), static_cast<int>(histogram.size())};
+}
+
+/// Rises from 0 to 1 over `length` bins.
+double raised_cosine(int bin, int length) {
+    return 0.5 - 0.5 * std::cos(core::kPi * (bin + 0.5) / length);
+}
+
 }  // namespace
 
 std::optional<SignalExtent> find_signal(const core::Transient& transient,
@@ -216,9 +232,10 @@ std::optional<SignalExtent> find_signal(const core::Transient& transient,
             end = static_cast<int>(i) + 1;
         }
     }
-    const bool reaches_the_end = end == static_cast<int>(kSegments) || end == 0;
-    extent.end_bin = reaches_the_end ? static_cast<int>(transient.num_bins())
-                                     : segments.begin + end * segments.length;
+    extent.begin_bin = segments.begin;
+    extent.reaches_the_end = end == static_cast<int>(kSegments);
+    extent.end_bin = extent.reaches_the_end || end == 0 ? static_cast<int>(transient.num_bins())
+                                                        : segments.begin + end * segments.length;
     return extent;
 }
 
@@ -249,27 +266,41 @@ core::ObservedBins prepared_observed(const PreparationPlan& plan) {
     return ranges;
 }
 
+std::vector<double> signal_of(const core::Transient& transient,
+                              const PreparationPlan& plan,
+                              std::size_t pair) {
+    const auto input = transient.histogram(pair);
+    std::vector<double> signal(input.begin(), input.end());
+    const core::BinRange recorded = recorded_bins(input, plan, pair);
+    const auto first = signal.begin() + recorded.begin;
+    const auto end = signal.begin() + recorded.end;
+    if (!plan.ambient_per_bin.empty()) {
+        // Bins zeroed at the start of the axis hold no ambient light either.
+        std::for_each(first, end, [&](double& value) { value -= plan.ambient_per_bin[pair]; });
+    }
+    const int begin = plan.observed ? recorded.begin : plan.taper.begin_bin;
+    for (int bin = begin; bin < std::min(begin + plan.taper.opening_bins, recorded.end); ++bin) {
+        signal[static_cast<std::size_t>(bin)] *=
+            raised_cosine(bin - begin, plan.taper.opening_bins);
+    }
+    for (int i = 0; i < std::min(plan.taper.end_bins, recorded.size()); ++i) {
+        signal[static_cast<std::size_t>(recorded.end - 1 - i)] *=
+            raised_cosine(i, plan.taper.end_bins);
+    }
+    return signal;
+}
+
 core::Transient prepare_histograms(const core::Transient& transient, const PreparationPlan& plan) {
     core::Transient prepared(transient.num_pairs(), plan.num_bins);
     const int merge = plan.merge_bins;
     core::parallel_for(prepared.num_pairs(), [&](std::size_t pair) {
-        const auto input = transient.histogram(pair);
         const auto output = prepared.histogram(pair);
-        std::vector<double> signal(input.begin(), input.end());
-        auto first = std::find_if(signal.begin(), signal.end(), [](double v) { return v != 0.0; });
-        auto end = signal.end();
-        if (plan.observed) {
-            first = signal.begin() + (*plan.observed)[pair].begin;
-            end = signal.begin() + (*plan.observed)[pair].end;
-        }
-        if (!plan.ambient_per_bin.empty()) {
-            // Bins zeroed at the start of the axis hold no ambient light either.
-            std::for_each(first, end, [&](double& value) { value -= plan.ambient_per_bin[pair]; });
-        }
+        std::vector<double> signal = signal_of(transient, plan, pair);
         if (plan.deconvolution) {
+            const core::BinRange recorded = recorded_bins(transient.histogram(pair), plan, pair);
             plan.deconvolution->apply(signal);
-            std::fill(signal.begin(), first, 0.0);
-            std::fill(end, signal.end(), 0.0);
+            std::fill(signal.begin(), signal.begin() + recorded.begin, 0.0);
+            std::fill(signal.begin() + recorded.end, signal.end(), 0.0);
         }
         const core::BinRange range = plan.prepared_range(pair);
         for (int bin = range.begin; bin < range.end; ++bin) {

@@ -7,6 +7,7 @@
 #include "renderer/core/capture/time_axis.h"
 #include "renderer/core/capture/transient.h"
 
+#include <complex>
 #include <memory>
 #include <optional>
 #include <span>
@@ -20,7 +21,9 @@ struct SignalExtent {
     double photon =
         1.0;          ///< what one adds: 1 to counts, else the dark segments' variance over mean
     int end_bin = 0;  ///< bins from here on hold nothing but ambient light
-    bool has_background = false;  ///< it is there, and the same in all of its segments
+    bool has_background = false;   ///< it is there, and the same in all of its segments
+    int begin_bin = 0;             ///< the first that any pair observed or holds something in
+    bool reaches_the_end = false;  ///< the signal lasts as long as the observed bins
 };
 
 /// Finds constant background light and the end of the signal.
@@ -64,6 +67,11 @@ class ResponseDeconvolution {
     /// floor      positive; about the ratio of noise to signal, as amplitudes
     ResponseDeconvolution(const core::ResponseFilter& filter, std::size_t num_bins, double floor);
 
+    /// factors    that frequencies are multiplied by, from 0 to the highest of transforms whose
+    ///            length is twice a good_fft_size() of at least num_bins
+    /// num_bins   of a histogram
+    ResponseDeconvolution(const std::vector<std::complex<double>>& factors, std::size_t num_bins);
+
     /// Replaces a histogram of num_bins by what it would be without the response; nothing is taken
     /// from beyond its ends. Bins may become negative. Safe to call from several threads.
     void apply(std::span<double> histogram) const;
@@ -76,6 +84,13 @@ class ResponseDeconvolution {
     std::vector<ComplexF> factors_;  ///< per frequency, the transforms' scale included
 };
 
+/// Raised cosines at the ends of histograms, which a transform would take for edges of the scene.
+struct Taper {
+    int begin_bin = 0;     ///< where observation begins, for pairs of which nothing else is known
+    int opening_bins = 0;  ///< length behind the first observed bin
+    int end_bins = 0;      ///< length before the last
+};
+
 /// What to do to histograms before a method sees them.
 struct PreparationPlan {
     int merge_bins = 1;
@@ -84,6 +99,7 @@ struct PreparationPlan {
     /// Of histograms of the capture's length, null: none.
     std::shared_ptr<const ResponseDeconvolution> deconvolution = nullptr;
     core::ObservedBins observed = std::nullopt;  ///< before merging
+    Taper taper = {};                            ///< likewise
 
     /// The bins of a prepared histogram that were observed, each of them as a whole.
     core::BinRange prepared_range(std::size_t pair) const {
@@ -97,9 +113,15 @@ struct PreparationPlan {
     }
 };
 
-/// Takes off ambient light, then the set-up's response, adds up neighbouring bins and drops those
-/// behind the plan's end. Bins zeroed at the start of a histogram stay 0, as do those not observed;
-/// what was observed of a bin that was not as a whole is dropped.
+/// A histogram without ambient light, tapered, before anything else is done to it. Bins zeroed at
+/// its start stay 0, as do those not observed.
+std::vector<double> signal_of(const core::Transient& transient,
+                              const PreparationPlan& plan,
+                              std::size_t pair);
+
+/// Takes off ambient light, tapers, takes off the set-up's response, adds up neighbouring bins and
+/// drops those behind the plan's end. Bins zeroed at the start of a histogram stay 0, as do those
+/// not observed; what was observed of a bin that was not as a whole is dropped.
 core::Transient prepare_histograms(const core::Transient& transient, const PreparationPlan& plan);
 
 /// The observed bins of prepared histograms.

@@ -41,6 +41,17 @@ ResponseDeconvolution::ResponseDeconvolution(const core::ResponseFilter& filter,
     }
 }
 
+ResponseDeconvolution::ResponseDeconvolution(const std::vector<std::complex<double>>& factors,
+                                             std::size_t num_bins)
+    : num_bins_(num_bins),
+      length_(2 * (factors.size() - 1)),
+      forward_(Fft::real_to_complex(length_, 1)),
+      inverse_(Fft::complex_to_real(length_, 1)) {
+    for (const std::complex<double>& factor : factors) {
+        factors_.emplace_back(factor / static_cast<double>(length_));
+    }
+}
+
 void ResponseDeconvolution::apply(std::span<double> histogram) const {
     FftBuffer buffer(Fft::row_floats(length_));
     FftBuffer spectrum(buffer.num_floats());

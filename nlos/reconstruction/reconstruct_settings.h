@@ -37,6 +37,10 @@ enum class FbpFilter { Laplacian, Phasor };
 /// What happens to constant background light.
 enum class Ambient { Auto, Keep, Subtract };
 
+/// Whether a response that nobody stated is told from the histograms and taken off. Auto: where
+/// these cannot be without one, see spectral_slope().
+enum class BlindDeconvolution { Auto, Off, On };
+
 /// What a reconstruction assumes about the hidden scene beyond the data. Tv: the solver, by the
 /// name of its prior.
 enum class Prior { None, Tv };
@@ -96,6 +100,7 @@ struct ReconstructSettings {
     std::optional<int> merge_bins;    ///< neighbouring bins added up first; empty: from the pitch
     double mask_threshold = 0.5;      ///< probability of a surface: foreground of depth and points
     std::optional<double> memory_gb;  ///< to take at most; empty: what the machine has
+    BlindDeconvolution blind_deconvolution = BlindDeconvolution::Auto;
 };
 
 template <class Visitor>
@@ -201,6 +206,11 @@ void for_each_field(ReconstructSettings& s, Visitor&& visit) {
                                  "ratio of noise to signal, as amplitudes: frequencies of which "
                                  "the response leaves less "
                                  "are not restored"));
+    visit("blind_deconvolution",
+          s.blind_deconvolution,
+          "take off a response that all histograms share, told from these alone (all methods but "
+          "solver): a diffusing medium, a detector's tail; auto: where no response is stated and "
+          "the spectrum of the histograms falls off as no surface's does");
     visit("ambient",
           s.ambient,
           "constant background light, and bins behind the signal's end; auto: taken off counts");
@@ -252,6 +262,10 @@ struct core::EnumNames<nlos::Falloff> {
 template <>
 struct core::EnumNames<nlos::Ambient> {
     static constexpr auto value = names_from_zero<nlos::Ambient>("auto", "keep", "subtract");
+};
+template <>
+struct core::EnumNames<nlos::BlindDeconvolution> {
+    static constexpr auto value = names_from_zero<nlos::BlindDeconvolution>("auto", "off", "on");
 };
 template <>
 struct core::EnumNames<nlos::Prior> {
