@@ -43,8 +43,10 @@ MeanSpectrum mean_spectrum(const core::Transient& transient,
 /// returns   nothing where the spectrum does not fall so far
 std::optional<double> spectral_slope(const MeanSpectrum& spectrum, double pitch_m);
 
-/// From this slope on a response is there: surfaces alone hardly ever exceed 3.5 and stay below
-/// 4.95, see tests/nlos/preparation/blind_response_test.cpp.
+/// From this slope on a response is taken to be there. Of 600 captures of 200 scenes of random
+/// plates and balls, clean and with 300 and 10,000 photons per histogram, two pass it without one,
+/// both with 300 photons (6.5 and 7.5); of the others the steepest has 5.0 and all but one scene
+/// less than 3.8.
 inline constexpr double kSlopeOfResponse = 5.2;
 
 /// A response that all histograms share, as they tell it themselves.

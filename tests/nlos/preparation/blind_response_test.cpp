@@ -111,7 +111,8 @@ Reconstruction lct_with(const core::Capture& capture, const std::vector<std::str
     return reconstruct(capture, settings, {});
 }
 
-// 120 captures. The steepest is a single half ball seen at a slant, 4.9; the next has 3.5.
+// 120 captures. The steepest has 4.9, the next scene 3.5. It is no proof for all scenes: see
+// kSlopeOfResponse for how often others are mistaken.
 TEST(BlindResponse, SurfacesAloneAreNoResponse) {
     double steepest = 0.0;
     for (std::uint64_t number = 0; number < 40; ++number) {
