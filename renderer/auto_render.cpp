@@ -41,7 +41,7 @@ bool may_average(const RenderSettings& settings, const Surfaces& surfaces) {
 
 // Orders that are far below the error asked for need not be computed. What is left out counts as
 // part of the error.
-std::optional<LeftOutOrders> leave_out_orders(RenderTask& task) {
+std::optional<core::LeftOutOrders> leave_out_orders(RenderTask& task) {
     constexpr double kFractionOfTarget = 0.5;
     RenderSettings& settings = task.settings;
     if (!settings.target_error || settings.by_order || settings.max_bounces <= 3) return {};
@@ -49,7 +49,8 @@ std::optional<LeftOutOrders> leave_out_orders(RenderTask& task) {
     const BounceTruncation orders =
         find_bounce_truncation(task, kFractionOfTarget * *settings.target_error);
     if (orders.last == settings.max_bounces) return {};
-    const LeftOutOrders left_out{orders.last + 1, settings.max_bounces, orders.left_out};
+    const core::LeftOutOrders left_out{
+        orders.last + 1, settings.max_bounces, orders.left_out, orders.share};
     settings.max_bounces = orders.last;
     return left_out;
 }

@@ -12,13 +12,26 @@ namespace renderer {
 namespace {
 
 constexpr std::size_t kMaxPairs = 128;
-constexpr std::size_t kCouples = 8;                    ///< of independent runs
+constexpr int kCouples = 8;                            ///< of independent runs
 constexpr int kSamples = 256;                          ///< per pair and run
 constexpr std::uint64_t kTruncationItem = 1ULL << 41;  ///< for random numbers of its own
 
-/// Squared norms over some pairs of the light of each order and all later ones: [order - 1][couple
-/// of runs]. The product of two independent estimates has no bias from their noise.
-using Norms = Eigen::ArrayXd;
+/// Over some pairs, the light of each order and all later ones, a row each.
+struct Tails {
+    /// Squared norms, a column for each couple of runs: the product of two independent estimates
+    /// has no bias from their noise.
+    Eigen::ArrayXXd norms;
+    Eigen::ArrayXd light;  ///< sums over bins
+
+    explicit Tails(int num_orders)
+        : norms(Eigen::ArrayXXd::Zero(num_orders, kCouples)),
+          light(Eigen::ArrayXd::Zero(num_orders)) {}
+    Tails& operator+=(const Tails& other) {
+        norms += other.norms;
+        light += other.light;
+        return *this;
+    }
+};
 
 // What a pair receives in each order and all later ones: [order - 1][bin].
 std::vector<double> tails_of(PassHistogram& histogram, std::size_t num_orders, std::size_t bins) {
@@ -32,7 +45,7 @@ std::vector<double> tails_of(PassHistogram& histogram, std::size_t num_orders, s
     return tails;
 }
 
-Norms norms_of_pair(const RenderTask& task,
+Tails tails_of_pair(const RenderTask& task,
                     const PathTracer& tracer,
                     const SensorPairs& sensor_pairs,
                     std::size_t pair) {
@@ -44,20 +57,23 @@ Norms norms_of_pair(const RenderTask& task,
         tracer.trace(sensor_pairs, pair, kSamples, rng, histogram);
         return tails_of(histogram, num_orders, bins);
     };
-    Norms norms = Norms::Zero(static_cast<Eigen::Index>(num_orders * kCouples));
-    for (std::size_t couple = 0; couple < kCouples; ++couple) {
-        const std::vector<double> first = trace_tails(2 * couple);
-        const std::vector<double> second = trace_tails(2 * couple + 1);
+    Tails tails(task.settings.max_bounces);
+    for (int couple = 0; couple < kCouples; ++couple) {
+        const auto run = 2 * static_cast<std::size_t>(couple);
+        const std::vector<double> first = trace_tails(run);
+        const std::vector<double> second = trace_tails(run + 1);
         for (std::size_t j = 0; j < first.size(); ++j) {
-            norms[static_cast<Eigen::Index>(j / bins * kCouples + couple)] += first[j] * second[j];
+            const auto order = static_cast<Eigen::Index>(j / bins);
+            tails.norms(order, couple) += first[j] * second[j];
+            tails.light[order] += first[j] + second[j];
         }
     }
-    return norms;
+    return tails;
 }
 
 // The norm of the light from an order on, so many standard deviations above its estimate.
-double norm_from(const Norms& norms, int order, double deviations) {
-    const auto of_couples = norms.segment((order - 1) * kCouples, kCouples);
+double norm_from(const Eigen::ArrayXXd& norms, int order, double deviations) {
+    const auto of_couples = norms.row(order - 1);
     double sum = 0.0;
     double squares = 0.0;
     for (const double norm : of_couples) {
@@ -77,18 +93,19 @@ BounceTruncation find_bounce_truncation(const RenderTask& task, double allowed) 
     const PathTracer tracer(task.scene, measuring);
     const SensorPairs sensor_pairs(task.scene, task.scan);
     const std::size_t num_pairs = std::min(kMaxPairs, task.scan.num_pairs());
-    const Norms zero = Norms::Zero(task.settings.max_bounces * static_cast<int>(kCouples));
-    const Norms norms = core::parallel_sum<Norms>(num_pairs, zero, [&](std::size_t i) {
+    const Tails none(task.settings.max_bounces);
+    const Tails tails = core::parallel_sum<Tails>(num_pairs, none, [&](std::size_t i) {
         const std::size_t pair = (2 * i + 1) * task.scan.num_pairs() / (2 * num_pairs);
-        return norms_of_pair(task, tracer, sensor_pairs, pair);
+        return tails_of_pair(task, tracer, sensor_pairs, pair);
     });
-    BounceTruncation result{task.settings.max_bounces, 0.0};
-    const double all = norm_from(norms, 1, 0.0);
+    BounceTruncation result{task.settings.max_bounces};
+    const double all = norm_from(tails.norms, 1, 0.0);
     if (!(all > 0.0)) return result;
     for (; result.last > 3; --result.last) {
-        const double tail = norm_from(norms, result.last, 2.0) / all;
+        const double tail = norm_from(tails.norms, result.last, 2.0) / all;
         if (tail > allowed) break;
         result.left_out = tail;
+        result.share = tails.light[result.last - 1] / tails.light[0];
     }
     return result;
 }

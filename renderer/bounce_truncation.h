@@ -9,6 +9,7 @@ namespace renderer {
 struct BounceTruncation {
     int last = 3;           ///< higher orders together stay below what is allowed
     double left_out = 0.0;  ///< their relative L2 over all of H: two sigma above the estimate
+    double share = 0.0;     ///< of all light, that is theirs: the estimate
 };
 
 /// Estimates by a short run of path tracing on some pairs how much of H the last orders hold, and

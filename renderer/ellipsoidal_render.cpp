@@ -16,8 +16,9 @@ namespace renderer {
 namespace {
 
 constexpr std::size_t kMeasuredPairs = 128;
-constexpr int kMeasuringPasses = 16;  ///< whose spread gives the standard deviation
-constexpr int kMeasuringSamples = 32;
+constexpr int kMeasuringPasses = 16;                  ///< whose spread gives the standard deviation
+constexpr int kMeasuringSamples = 32;                 ///< at most, and no fewer than one
+constexpr double kMeasuringShare = 0.02;              ///< of the paths that were rendered
 constexpr std::uint64_t kMeasuringItem = 1ULL << 40;  ///< for random numbers of its own
 
 double sum_of(PassHistogram& histogram) {
@@ -37,6 +38,15 @@ double kept_signal(const core::Capture& capture, const std::vector<std::size_t>&
     return sum;
 }
 
+// A few of a hundred paths that were rendered, so that what is said takes little time.
+int measuring_samples(const RenderTask& task, const RenderResult& result) {
+    const double rendered =
+        static_cast<double>(result.samples_per_pair) * static_cast<double>(task.scan.num_pairs());
+    const double samples =
+        kMeasuringShare * rendered / static_cast<double>(kMeasuredPairs * kMeasuringPasses);
+    return static_cast<int>(std::clamp(samples, 1.0, double{kMeasuringSamples}));
+}
+
 std::string drop_warning(const DroppedSignal& dropped,
                          double kept,
                          const std::vector<std::string>& objects) {
@@ -50,7 +60,7 @@ std::string drop_warning(const DroppedSignal& dropped,
 
 }  // namespace
 
-DroppedSignal measure_dropped_signal(const RenderTask& task, std::size_t max_pairs) {
+DroppedSignal measure_dropped_signal(const RenderTask& task, std::size_t max_pairs, int samples) {
     DroppedSignal dropped;
     const std::size_t count = std::min(max_pairs, task.scan.num_pairs());
     for (std::size_t i = 0; i < count; ++i) {
@@ -69,7 +79,7 @@ DroppedSignal measure_dropped_signal(const RenderTask& task, std::size_t max_pai
             double sum = 0.0;
             for (const std::size_t pair : dropped.pairs) {
                 core::Rng rng(task.settings.seed, kMeasuringItem + pair, pass);
-                tracer.trace(sensor_pairs, pair, kMeasuringSamples, rng, histogram);
+                tracer.trace(sensor_pairs, pair, samples, rng, histogram);
                 sum += sum_of(histogram);
             }
             return Moments(sum, sum * sum);
@@ -80,6 +90,22 @@ DroppedSignal measure_dropped_signal(const RenderTask& task, std::size_t max_pai
     return dropped;
 }
 
+bool can_be_lit(const ExcludedObjects& excluded, const Scene& scene, const core::Scan& scan) {
+    constexpr double kFlat_m = 1e-6;
+    if (!scan.has_wall()) return true;
+    const core::WallPoints& lights = scan.wall().illumination;
+    const auto is_before_a_light = [&](const core::Vec3& vertex) {
+        for (std::size_t i = 0; i < lights.size(); ++i) {
+            if (lights.normals[i].dot(vertex - lights.positions[i]) > kFlat_m) return true;
+        }
+        return false;
+    };
+    return std::ranges::any_of(scene.objects(), [&](const Object& object) {
+        return std::ranges::find(excluded.names, object.name) != excluded.names.end() &&
+               std::ranges::any_of(object.mesh.vertices, is_before_a_light);
+    });
+}
+
 std::string surfaces_kept(const RenderSettings& settings, const ExcludedObjects& excluded) {
     const bool drops = settings.exclude == Exclusion::Drop && !excluded.names.empty();
     return drops ? "all but the excluded ones" : "all";
@@ -87,8 +113,9 @@ std::string surfaces_kept(const RenderSettings& settings, const ExcludedObjects&
 
 void warn_of_dropped_signal(const RenderTask& task, const RenderResult& result) {
     if (task.settings.exclude != Exclusion::Drop || result.excluded.names.empty()) return;
-    if (!task.progress.warn) return;
-    const DroppedSignal dropped = measure_dropped_signal(task, kMeasuredPairs);
+    if (!task.progress.warn || !can_be_lit(result.excluded, task.scene, task.scan)) return;
+    const DroppedSignal dropped =
+        measure_dropped_signal(task, kMeasuredPairs, measuring_samples(task, result));
     const double kept = kept_signal(result.capture, dropped.pairs);
     task.progress.warn(drop_warning(dropped, kept, result.excluded.names));
 }

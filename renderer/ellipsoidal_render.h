@@ -25,13 +25,19 @@ struct DroppedSignal {
 };
 
 /// Estimates it on at most `max_pairs` pairs, spread over the scan.
-DroppedSignal measure_dropped_signal(const RenderTask& task, std::size_t max_pairs);
+///
+/// samples   of paths, per pair and each of 16 passes, whose spread gives sigma
+DroppedSignal measure_dropped_signal(const RenderTask& task, std::size_t max_pairs, int samples);
+
+/// Whether objects of which something is excluded can be lit at all: a plane wall is not lit by the
+/// spots on it, and lacks no signal when it is dropped.
+bool can_be_lit(const ExcludedObjects& excluded, const Scene& scene, const core::Scan& scan);
 
 /// Which surfaces connections end on, in words.
 std::string surfaces_kept(const RenderSettings& settings, const ExcludedObjects& excluded);
 
-/// With excluded surfaces dropped, warns of the fraction of the signal that is lost, estimated on
-/// some of the pairs.
+/// With excluded surfaces dropped, warns of the fraction of the signal that is lost where there may
+/// be any, estimated on some of the pairs by a few paths for every hundred that were rendered.
 ///
 /// result   with the capture and what was excluded
 void warn_of_dropped_signal(const RenderTask& task, const RenderResult& result);

@@ -95,6 +95,7 @@ RenderResult render_frames(std::shared_ptr<const Scene> scene,
         RenderResult rendered = render_frame(frame, scan, part);
         rendered.num_rays += sequence.num_rays;
         rendered.seconds += sequence.seconds;
+        rendered.left_out = core::widest(rendered.left_out, sequence.left_out);
         sequence = std::move(rendered);
         recorded.frames.push_back(sequence.capture.transient);
         // Of nothing but noise the relative error is not known, either.

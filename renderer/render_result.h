@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/core/capture/capture.h"
+#include "renderer/core/capture/left_out_orders.h"
 #include "renderer/ellipsoidal/excluded_facets.h"
 #include "renderer/film/scan_smoothing.h"
 #include "renderer/restir/restir_counts.h"
@@ -22,23 +23,15 @@ struct OrderSource {
     std::string surfaces = "all";
 };
 
-/// Bounce orders that `auto` did not compute.
-struct LeftOutOrders {
-    int first = 0;
-    int last = 0;
-    double error =
-        0.0;  ///< relative L2 over all of H that this costs: two sigma above the estimate
-};
-
 /// What render() computed and what it took.
 struct RenderResult {
     core::Capture capture;
-    std::vector<OrderSource> sources;          ///< orders 1 and 2 need no estimator
-    std::optional<double> estimated_error;     ///< relative L2 over all of H; empty: not known
-    std::optional<double> element_tolerance;   ///< of third bounces, see RenderSettings
-    std::optional<LeftOutOrders> left_out;     ///< counts as part of the error
-    std::optional<SmoothingWidths> smoothing;  ///< of what paths gave; its bias likewise
-    std::uint64_t samples_per_pair = 0;        ///< candidate paths used, whole passes
+    std::vector<OrderSource> sources;             ///< orders 1 and 2 need no estimator
+    std::optional<double> estimated_error;        ///< relative L2 over all of H; empty: not known
+    std::optional<double> element_tolerance;      ///< of third bounces, see RenderSettings
+    std::optional<core::LeftOutOrders> left_out;  ///< counts as part of the error
+    std::optional<SmoothingWidths> smoothing;     ///< of what paths gave; its bias likewise
+    std::uint64_t samples_per_pair = 0;           ///< candidate paths used, whole passes
     std::uint64_t num_rays = 0;
     double seconds = 0.0;
     ExcludedObjects excluded;    ///< from ellipsoidal connections, when there are any

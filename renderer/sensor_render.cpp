@@ -197,7 +197,7 @@ void ZoneRenderer::add(const RenderResult& part, const PairSum& sum) {
     if (!is_error_known_) result_.estimated_error.reset();
     if (result_.sources.empty()) result_.sources = part.sources;
     if (part.element_tolerance) result_.element_tolerance = part.element_tolerance;
-    if (part.left_out) result_.left_out = part.left_out;
+    result_.left_out = core::widest(result_.left_out, part.left_out);
     result_.excluded = part.excluded;
     result_.samples_per_pair = std::max(result_.samples_per_pair, part.samples_per_pair);
     result_.num_rays += part.num_rays;

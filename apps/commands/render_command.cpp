@@ -46,6 +46,7 @@ void note(const renderer::RenderResult& result, const std::string& output) {
     }
     outcome()["samples_per_pair"] = result.samples_per_pair;
     outcome()["estimated_error"] = core::write_value(result.estimated_error);
+    outcome()[core::kLeftOutOrdersKey] = core::write_value(result.left_out);
     outcome()["interrupted"] = result.interrupted;
     outcome()["seconds_render"] = result.seconds;
 }
@@ -68,10 +69,8 @@ void run(const RenderArguments& arguments) {
     if (result.estimated_error)
         effort += fmt::format("error about {:.1e}, ", *result.estimated_error);
     if (const auto& orders = result.left_out) {
-        effort += fmt::format("of which {:.1e} for orders {} to {}, which are left out, ",
-                              orders->error,
-                              orders->first,
-                              orders->last);
+        effort += fmt::format(
+            "of which {:.1e} for what is left out: {}, ", orders->error, core::describe(*orders));
     }
     if (result.smoothing) effort += averages_of(*result.smoothing);
     if (result.samples_per_pair > 0)

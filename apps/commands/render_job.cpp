@@ -66,11 +66,7 @@ core::Json provenance(const RenderInput& input, const renderer::RenderResult& re
     info["estimator"] = estimator_names(result);
     if (!result.sources.empty()) info["orders"] = sources_of(result);
     if (result.estimated_error) info["estimated_error"] = *result.estimated_error;
-    if (result.left_out) {
-        info["orders_left_out"] = {{"first", result.left_out->first},
-                                   {"last", result.left_out->last},
-                                   {"error", result.left_out->error}};
-    }
+    if (result.left_out) info[core::kLeftOutOrdersKey] = core::write_value(*result.left_out);
     if (result.smoothing) {
         info["smoothing"] = {{"points", result.smoothing->points},
                              {"bins", result.smoothing->bins}};

@@ -256,6 +256,9 @@ Item make_item(const Recipe& recipe,
     if (result.estimated_error && !item.is_dark) {
         item.parameters["estimated_error"] = *result.estimated_error;
     }
+    if (result.left_out) {
+        item.parameters[core::kLeftOutOrdersKey] = core::write_value(*result.left_out);
+    }
     if (result.element_tolerance) {
         item.parameters["element_tolerance"] = *result.element_tolerance;
     }

@@ -3,6 +3,7 @@
 #include "apps/python/capture_histograms.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/pictures/pictures.h"
+#include "renderer/core/capture/left_out_orders.h"
 #include "renderer/core/settings/settings_json.h"
 
 #include <fmt/ranges.h>
@@ -242,6 +243,14 @@ void bind_facts(nb::class_<Capture>& binding) {
                 c.scene_info = json_from_python(info, "scene_info");
             },
             "free dict that is stored with the capture; what is read is a copy")
+        .def_prop_ro(
+            core::kLeftOutOrdersKey,
+            [](const Capture& c) {
+                return python_from_json(core::write_value(core::recorded_left_out_orders(c)));
+            },
+            "bounce orders that render() did not compute since target_error allowed it: dict of "
+            "first, last, error (relative L2 over all of H that this costs) and share (of the "
+            "light); None: none, or not known")
         .def_ro("notes", &Capture::notes, "what the reader assumed or changed");
 }
 

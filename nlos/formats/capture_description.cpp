@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/formats/capture_file.h"
+#include "renderer/core/capture/left_out_orders.h"
 #include "renderer/core/capture/sensor_footprint.h"
 
 #include <fmt/core.h>
@@ -163,6 +164,11 @@ std::vector<std::string> describe_capture(const core::Capture& capture) {
         lines.push_back(describe_observed_frames(capture));
     }
     lines.push_back(describe_values(capture));
+    if (const auto orders = core::recorded_left_out_orders(capture)) {
+        lines.push_back(fmt::format("left out: bounces of {}; an error of {:.2g}, relative L2",
+                                    core::describe(*orders),
+                                    orders->error));
+    }
     if (capture.counts_per_radiance) {
         lines.push_back(
             fmt::format("counts per unit of radiance: {:.6g}", *capture.counts_per_radiance));

@@ -48,6 +48,12 @@ inline constexpr const char* kCameraKey = "camera";
 inline constexpr const char* kGateStep = "gate_step_m";
 inline constexpr const char* kFrameTime = "frame_s";
 
+/// Attributes of H: the first and last bounce order that its render left out, the relative L2 error
+/// of that, and the share of the light. y-tal opens files with them, as it does with scene_info.
+inline constexpr const char* kLeftOutOrders = "orders_left_out";
+inline constexpr const char* kLeftOutError = "orders_left_out_error";
+inline constexpr const char* kLeftOutShare = "orders_left_out_share";
+
 /// Attributes of /nlos/velocity: its axis, and the carrier that Doppler shifts are given for.
 inline constexpr const char* kVelocityStart = "start_m_per_s";
 inline constexpr const char* kVelocityBinWidth = "bin_width_m_per_s";

@@ -3,6 +3,7 @@
 #include "nlos/formats/capture_arrays.h"
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/ytal_layout.h"
+#include "renderer/core/capture/left_out_orders.h"
 #include "renderer/core/error.h"
 #include "renderer/core/settings/settings_json.h"
 
@@ -99,9 +100,24 @@ void read_own_group(const ArrayReader& file, Capture& capture) {
     if (file.has("nlos/velocity")) read_velocity(file, capture);
 }
 
+/// Where another program has written scene_info anew and kept the attributes of H.
+void read_left_out_orders(const ArrayReader& file, Capture& capture) {
+    if (capture.scene_info->contains(core::kLeftOutOrdersKey)) return;
+    const auto orders = file.real_attribute("H", kLeftOutOrders);
+    const auto error = file.real_attribute("H", kLeftOutError);
+    const auto share = file.real_attribute("H", kLeftOutShare);
+    if (!orders || !error || !share) return;
+    if (orders->size() != 2 || error->size() != 1 || share->size() != 1) return;
+    capture.scene_info[core::kLeftOutOrdersKey] = {{"first", orders->front()},
+                                                   {"last", orders->back()},
+                                                   {"error", error->front()},
+                                                   {"share", share->front()}};
+}
+
 Capture read_ytal(const ArrayReader& file, const CaptureReadSettings& settings) {
     Capture capture = read_histograms(file, settings);
     read_own_group(file, capture);
+    read_left_out_orders(file, capture);
     return capture;
 }
 

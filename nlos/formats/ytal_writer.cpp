@@ -4,6 +4,7 @@
 #include "nlos/formats/capture_format.h"
 #include "nlos/formats/coordinates.h"
 #include "nlos/formats/ytal_layout.h"
+#include "renderer/core/capture/left_out_orders.h"
 #include "renderer/core/precision.h"
 #include "renderer/core/settings/json_file.h"
 
@@ -92,6 +93,16 @@ void write_observed_bins(Hdf5Writer& file,
     file.write("nlos/observed_bins", shape, observed_array(observed));
 }
 
+void state_left_out_orders(Hdf5Writer& file, const Capture& capture) {
+    const auto orders = core::recorded_left_out_orders(capture);
+    if (!orders) return;
+    const double first = orders->first;
+    const double last = orders->last;
+    file.write_attribute("H", kLeftOutOrders, {2}, {{first, last}});
+    file.write_attribute("H", kLeftOutError, {1}, {{orders->error}});
+    file.write_attribute("H", kLeftOutShare, {1}, {{orders->share}});
+}
+
 /// What y-tal has no name for, if there is any and y-tal need not read the file.
 /// returns   whether there is any beside the unit
 bool write_own_group(Hdf5Writer& file,
@@ -144,6 +155,7 @@ std::vector<std::string> write_ytal(const std::string& path,
 
     Hdf5Writer file(path);
     write_transient(file, "H", h_shape, capture.transient);
+    state_left_out_orders(file, capture);
     file.write_enum("H_format", h_format_members(), static_cast<int>(h_format(layout)));
     write_positions(file, "sensor_xyz", {3}, {scan.devices().detector});
     write_positions(file, "laser_xyz", {3}, {scan.devices().laser});

@@ -121,7 +121,7 @@ void EllipsoidalTracer::Walk::trace_samples(int count) {
 void EllipsoidalTracer::Walk::cut_hierarchy(int num_samples) {
     const OplBand lengths{tracer_.lengths_.low_m - ends_.device_segments_m,
                           tracer_.lengths_.high_m - ends_.device_segments_m};
-    if (tracer_.facet_traits_.any_adds()) {
+    if (tracer_.facet_traits_.any_adds() && tracer_.connects()) {
         cut_.rebuild(connection_ends(ends_),
                      lengths,
                      std::max(kMinEntries, static_cast<std::size_t>(num_samples)));
@@ -208,8 +208,12 @@ void EllipsoidalTracer::Walk::extend(PathVertex vertex) {
         const OplBand lengths{tracer_.lengths_.low_m - before, tracer_.lengths_.high_m - before};
         // No longer path from here is shorter than the one straight to the light.
         if (lengths.high_m < (ends.foci.a - ends.foci.b).norm()) return;
-        const auto lobe = tracer_.technique_.lobe_of(vertex, ends_.light.position, num_rays_);
-        const int num_draws = lobe && lobe->lobe.width_rad < kNarrowLobe_rad ? kDrawsAlongLobes : 1;
+        std::optional<LobeOnFacet> lobe;
+        int num_draws = 0;
+        if (tracer_.connects()) {
+            lobe = tracer_.technique_.lobe_of(vertex, ends_.light.position, num_rays_);
+            num_draws = lobe && lobe->lobe.width_rad < kNarrowLobe_rad ? kDrawsAlongLobes : 1;
+        }
         for (int i = 0; i < num_draws; ++i) connect(vertex, ends, lengths, lobe, num_draws);
         const auto pdf = walk.draw_next(vertex, rng_, num_rays_);
         if (!pdf) return;

@@ -38,6 +38,8 @@ class EllipsoidalTracer : public Tracer {
 
     class Walk;
 
+    // The facets of the scope are in the hierarchy, or else none is.
+    bool connects() const { return scope_ != ConnectionScope::Excluded; }
     bool in_scope(std::uint32_t facet) const {
         return scope_ == ConnectionScope::All ||
                excluded_.facets[facet] == (scope_ == ConnectionScope::Excluded);

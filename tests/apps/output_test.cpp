@@ -51,6 +51,7 @@ TEST_F(Output, JsonEndsWithWhatTheTextShows) {
     EXPECT_EQ(render["estimator"], "third_bounce");
     EXPECT_GT(render["estimated_error"].get<double>(), 0.0);
     EXPECT_GT(render["seconds"].get<double>(), 0.0);
+    EXPECT_TRUE(render.at("orders_left_out").is_null());
 
     const Outcome quiet = run("reconstruct " + capture + " -o " + file("v.h5") +
                               " --method lct --json --quiet --ply " + file("p.ply"));
@@ -62,6 +63,23 @@ TEST_F(Output, JsonEndsWithWhatTheTextShows) {
     EXPECT_TRUE(scores["metrics"]["depth_mae_m"].is_number());
     EXPECT_FALSE(scores.contains("written"));
     EXPECT_EQ(last_line(run("info " + capture + " --json"))["lines"][0], "format: y-tal HDF5");
+}
+
+// The letter lights nothing but the wall: bounces beyond the third are few.
+TEST_F(Output, OrdersThatAreLeftOutAreSaidEverywhere) {
+    const std::string scene = make_scene("scene.json", core::Json::object());
+    const Outcome outcome = run("render " + scene + " -o " + file("c.h5") +
+                                " --max-bounces 5 --target-error 0.04 --json");
+    const core::Json orders = last_line(outcome)["orders_left_out"];
+    ASSERT_TRUE(orders.is_object());
+    EXPECT_EQ(orders["first"], 4);
+    EXPECT_EQ(orders["last"], 5);
+    EXPECT_GT(orders["share"].get<double>(), 0.0);
+    EXPECT_LT(orders["error"].get<double>(), 0.04);
+    const std::string words = "orders 4 to 5, some ";
+    EXPECT_NE(outcome.out.find(words), std::string::npos);
+    EXPECT_NE(run("info " + file("c.h5")).out.find("left out: bounces of " + words),
+              std::string::npos);
 }
 
 TEST_F(Output, JsonTellsErrorsToo) {

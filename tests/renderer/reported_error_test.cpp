@@ -199,6 +199,13 @@ TEST(ReportedError, OrdersAreLeftOutWhenTheyAreBelowWhatIsAllowed) {
         truth = renderer::render(scene, scan, {kReportedAxis, {}}, settings, {}).capture;
         ++settings.seed;
     }
+    const auto light_from = [&](std::size_t order) {
+        double light = 0.0;
+        for (std::size_t k = order; k <= 6; ++k) {
+            for (const float value : truths[0].by_order[k - 1].values()) light += value;
+        }
+        return light;
+    };
     const auto tail_from = [&](std::size_t order) {
         double product = 0.0;
         for (std::size_t i = 0; i < truths[0].transient.values().size(); ++i) {
@@ -214,11 +221,14 @@ TEST(ReportedError, OrdersAreLeftOutWhenTheyAreBelowWhatIsAllowed) {
     };
     for (int order = 6; order > 3; --order) {
         const double fraction = tail_from(static_cast<std::size_t>(order)) / tail_from(1);
-        const auto [last, left_out] = renderer::find_bounce_truncation(
+        const auto [last, left_out, share] = renderer::find_bounce_truncation(
             {scene, scan, {kReportedAxis, {}}, settings, {}}, 2.5 * fraction);
         EXPECT_LT(last, order) << "fraction " << fraction;
         EXPECT_GE(left_out, 0.95 * fraction);
         EXPECT_LE(left_out, 2.5 * fraction);
+        // Both are sums over at least 64,000 samples, known to about 1 %.
+        const double light = light_from(static_cast<std::size_t>(last) + 1) / light_from(1);
+        EXPECT_NEAR(share, light, 0.05 * light);
     }
     EXPECT_EQ(
         renderer::find_bounce_truncation({scene, scan, {kReportedAxis, {}}, settings, {}}, 0.0)
@@ -240,6 +250,7 @@ TEST(ReportedError, AutoSaysWhichOrdersItLeavesOut) {
     const auto result = renderer::render(scene, scan, {kReportedAxis, {}}, settings, {});
     ASSERT_TRUE(result.left_out);
     EXPECT_EQ(result.left_out->last, 6);
+    EXPECT_EQ(result.left_out->share, 0.0);
     EXPECT_GE(*result.estimated_error, result.left_out->error);
     settings.target_error.reset();
     EXPECT_FALSE(renderer::render(scene, scan, {kReportedAxis, {}}, settings, {}).left_out);

@@ -72,6 +72,17 @@ def test_doubts_become_warnings(letter):
             nlos.render(letter, axis={"opl_start_m": 50.0, "bin_width_m": 0.01, "num_bins": 64})
 
 
+def test_orders_that_are_left_out_are_said(letter, tmp_path):
+    assert nlos.render(letter).orders_left_out is None
+    capture = nlos.render(letter, max_bounces=5, target_error=0.04)
+    orders = capture.orders_left_out
+    assert (orders["first"], orders["last"]) == (4, 5)
+    assert 0.0 < orders["share"] and 0.0 < orders["error"] < 0.04
+    assert "left out: bounces of orders 4 to 5" in repr(capture)
+    capture.write(tmp_path / "c.h5")
+    assert nlos.read(tmp_path / "c.h5").orders_left_out == orders
+
+
 def test_other_threads_run_meanwhile(letter):
     turns = 0
     done = threading.Event()

@@ -2,6 +2,7 @@
 #include "nlos/containers/array_reader.h"
 #include "nlos/formats/capture_file.h"
 #include "nlos/formats/ytal_layout.h"
+#include "renderer/core/capture/left_out_orders.h"
 #include "renderer/core/settings/json_file.h"
 #include "renderer/core/settings/settings_json.h"
 #include "tests/nlos/formats/ytal_capture_file.h"
@@ -96,6 +97,31 @@ TEST(YtalCapture, FramesSurviveTheRoundTrip) {
                 std::ranges::equal(read.sequence->frames[i].values(), sequence.frames[i].values()));
         }
     }
+}
+
+TEST(YtalCapture, LeftOutOrdersAreAttributesOfHistograms) {
+    Capture capture = example_capture(ScanPattern::Confocal);
+    const core::Json orders = {{"first", 4}, {"last", 6}, {"error", 0.01}, {"share", 0.02}};
+    capture.scene_info[core::kLeftOutOrdersKey] = orders;
+    const CaptureFile file(capture);
+    expect_same(file.read(), capture);
+    const ArrayReader reader(file.path());
+    EXPECT_EQ(reader.real_attribute("H", "orders_left_out"), (std::vector{4.0, 6.0}));
+    EXPECT_EQ(reader.real_attribute("H", "orders_left_out_error"), std::vector{0.01});
+    EXPECT_EQ(reader.real_attribute("H", "orders_left_out_share"), std::vector{0.02});
+
+    // Another program's scene_info.
+    file.remove("scene_info");
+    const Capture read = file.read();
+    EXPECT_EQ(read.scene_info->at(core::kLeftOutOrdersKey), orders);
+    std::string text;
+    for (const auto& line : describe_capture(read)) text += line + "\n";
+    EXPECT_NE(text.find("left out: bounces of orders 4 to 6, some 2 % of the light; an error of "
+                        "0.01, relative L2\n"),
+              std::string::npos)
+        << text;
+    const ArrayReader without(CaptureFile(example_capture(ScanPattern::Confocal)).path());
+    EXPECT_FALSE(without.real_attribute("H", "orders_left_out"));
 }
 
 TEST(YtalCapture, PointsAndNormalsStateThatTheyAreInTheWorld) {

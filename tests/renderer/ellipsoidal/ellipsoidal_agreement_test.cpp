@@ -196,11 +196,36 @@ TEST(EllipsoidalTracer, DropLosesExactlyTheSignalOfTheExcludedSurfaces) {
         variance += variance_of(all, i) + variance_of(kept, i);
     }
     const auto measured =
-        renderer::measure_dropped_signal({few.scene, few.scan, few.axis, settings, {}}, 4);
+        renderer::measure_dropped_signal({few.scene, few.scan, few.axis, settings, {}}, 4, 32);
     const double sigma = std::hypot(measured.sigma, std::sqrt(variance));
     EXPECT_GT(test_support::normal_tail((measured.lost - expected) / sigma), 1e-4)
         << measured.lost << " +- " << measured.sigma << " expected " << expected;
     EXPECT_LT(measured.sigma, 0.2 * expected);
+}
+
+// A plane wall is not lit by the spots on it: nothing is lost, and nothing is measured or said.
+TEST(EllipsoidalTracer, DropOfAPlaneWallLosesNothing) {
+    const FewPairs few("bars");
+    RenderSettings settings = few.settings(Estimator::Ellipsoidal, 5, 400);
+    std::vector<std::string> warnings;
+    core::Progress progress;
+    progress.warn = [&](const std::string& text) { warnings.push_back(text); };
+    settings.exclude = Exclusion::Drop;
+    const auto dropped = renderer::render(few.scene, few.scan, few.axis, settings, progress);
+    EXPECT_EQ(dropped.excluded.names, std::vector<std::string>{"relay_wall"});
+    EXPECT_TRUE(warnings.empty()) << warnings[0];
+    settings.exclude = Exclusion::Mis;
+    const auto kept = few.render(settings);
+    EXPECT_TRUE(std::ranges::equal(dropped.capture.transient.values(), kept.transient.values()));
+
+    const renderer::ExcludedObjects wall{{"relay_wall"}, {}};
+    EXPECT_FALSE(renderer::can_be_lit(wall, few.scene, few.scan));
+    EXPECT_FALSE(renderer::can_be_lit({}, few.scene, few.scan));
+    const renderer::ExcludedObjects hidden{{few.scene.objects().front().name}, {}};
+    EXPECT_TRUE(renderer::can_be_lit(hidden, few.scene, few.scan));
+    core::WallScan tilted = few.scan;
+    tilted.illumination.normals[0] = Vec3(0.1, 0.0, 1.0).normalized();
+    EXPECT_TRUE(renderer::can_be_lit(wall, few.scene, tilted));
 }
 
 // A camera inside an open box with a ball, its light beside it or a spot on the floor.
