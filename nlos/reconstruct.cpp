@@ -4,7 +4,6 @@
 #include "nlos/preparation/capture_faults.h"
 #include "nlos/preparation/memory_limit.h"
 #include "nlos/preparation/place_resolution.h"
-#include "nlos/preparation/second_capture.h"
 #include "nlos/reconstruct_choices.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/core/system/process.h"
@@ -40,7 +39,7 @@ MethodInput input_of(const ReconstructionPlan& plan,
 
 /// Memory that is taken beside a method's own [bytes].
 double other_bytes(const core::Capture& capture, const ReconstructionPlan& plan) {
-    const bool has_noise = knows_its_noise(capture);
+    const bool has_noise = plan.knows_noise(capture);
     double bytes = 0.0;
     if (plan.changes_histograms() || has_noise) {
         bytes = 4.0 * static_cast<double>(plan.prepared.scan.num_pairs()) * plan.time_axis.num_bins;
@@ -114,7 +113,7 @@ std::optional<Volume> measured_again(const core::Capture& capture,
                                      const ReconstructSettings& settings,
                                      std::size_t num_slabs,
                                      const core::Progress& progress) {
-    const std::optional<core::Capture> second = measure_again(capture);
+    const std::optional<core::Capture> second = measure_again(capture, plan.preparation.photon);
     if (!second) return std::nullopt;
     PreparedCapture prepared = crop_capture(*second, settings.crop);
     if (!plan.prepared.conversion.empty()) convert_to_confocal(prepared);
@@ -193,7 +192,7 @@ Reconstruction reconstruct(const core::Capture& capture,
     }
     const std::size_t num_slabs = claim_memory(used, plan, progress, result);
 
-    const core::Progress first_run = progress.part(0.0, knows_its_noise(used) ? 0.5 : 1.0);
+    const core::Progress first_run = progress.part(0.0, plan.knows_noise(used) ? 0.5 : 1.0);
     const std::optional<core::Transient> own = prepare(plan, plan.prepared.transient());
     const MethodInput input =
         input_of(plan, own ? *own : plan.prepared.transient(), result.settings, first_run);

@@ -6,6 +6,7 @@
 #include "nlos/preparation/checks/capture_check.h"
 #include "nlos/preparation/direct_response.h"
 #include "nlos/preparation/wiener_snr.h"
+#include "nlos/volume_choices.h"
 #include "renderer/core/capture/recorded_detector.h"
 
 #include <fmt/format.h>
@@ -18,9 +19,13 @@
 namespace nlos {
 namespace {
 
-constexpr std::size_t kDefaultColumns = 64;
 constexpr int kTaperBins = 6;           // after merging
 constexpr double kBinOfResponse = 0.4;  // standard deviations: widens it by less than 1 %
+
+/// Wall points' distance, where they form a grid.
+double pitch_m(const PreparedCapture& prepared) {
+    return std::min(prepared.wall.grid->pitch_m[0], prepared.wall.grid->pitch_m[1]);
+}
 
 /// As many bins as keep the range they cover within a quarter of the wall points' distance: finer
 /// depth than that no aperture of this sampling resolves, and noise and work shrink with the bins.
@@ -29,8 +34,7 @@ constexpr double kBinOfResponse = 0.4;  // standard deviations: widens it by les
 int default_merge_bins(const PreparedCapture& prepared, const ReconstructSettings& settings) {
     const core::TimeAxis& axis = prepared.time_axis;
     if (!prepared.wall.grid) return 1;
-    double limit_m =
-        0.25 * std::min(prepared.wall.grid->pitch_m[0], prepared.wall.grid->pitch_m[1]);
+    double limit_m = 0.25 * pitch_m(prepared);
     if (traits_of(settings).explains_response && core::is_given(settings.response)) {
         const auto response = core::make_response(settings.response, "response");
         const double range_m = 0.5 * std::sqrt(core::moments(response).variance_m2);
@@ -52,13 +56,6 @@ core::ResponseFilter response_filter(const ReconstructSettings& settings,
     if (!core::is_given(settings.response)) return {};
     return core::sample_response(core::make_response(settings.response, "response"),
                                  axis.bin_width_m);
-}
-
-/// Distance of voxels along z unless set: a bin's range, or what the virtual wave resolves.
-double default_depth_step_m(const core::TimeAxis& axis, const ReconstructSettings& settings) {
-    const double bin = 0.5 * axis.bin_width_m;
-    return traits_of(settings).propagates_wave ? std::max(bin, *settings.phasor.wavelength_m / 8.0)
-                                               : bin;
 }
 
 /// Half the path lengths that the axis covers once device segments are taken off.
@@ -89,20 +86,6 @@ void leave_out_direct_return(const core::Capture& capture, Reconstruction& resul
     result.findings.push_back(describe(*direct));
 }
 
-/// The method, with what it takes from the capture's provenance.
-void choose_and_enter_method(const core::Capture& capture,
-                             PreparedCapture& prepared,
-                             Reconstruction& result) {
-    ReconstructSettings& settings = result.settings;
-    if (!settings.solver.spot_m) {
-        settings.solver.spot_m = core::recorded_spot_m(capture).value_or(0.0);
-    }
-    const MethodChoice choice = choose_method(settings, prepared);
-    settings.method = choice.method;
-    result.method = core::enum_name(choice.method);
-    result.reason = choice.reason;
-}
-
 /// Takes background light off, and what is behind the signal unless depths there are asked for.
 /// Counts have a background unless told otherwise, radiance where it stands on a constant level.
 void leave_out_background(const PreparedCapture& prepared,
@@ -118,6 +101,11 @@ void leave_out_background(const PreparedCapture& prepared,
         if (!has_any) return;
     }
     if (signal) {
+        const bool tells_noise = signal->has_background && signal->photon > 0.0;
+        if (tells_noise && prepared.unit != core::TransientUnit::Counts &&
+            prepared.conversion.empty()) {
+            plan.photon = signal->photon;
+        }
         plan.ambient_per_bin = std::move(signal->ambient_per_bin);
         plan.taper.begin_bin = signal->begin_bin;
         const int taper_bins = kTaperBins * plan.merge_bins;
@@ -160,6 +148,41 @@ PreparationPlan choose_preparation(const PreparedCapture& prepared, ReconstructS
     return plan;
 }
 
+/// Whether a response may be looked for that nobody stated.
+bool may_tell_response(const PreparedCapture& prepared, const ReconstructSettings& settings) {
+    const bool is_stated = core::is_given(settings.response) || settings.response.is_none;
+    return !is_stated && prepared.time_axis.num_bins >= kMinBins && prepared.wall.grid;
+}
+
+/// The method, with what it takes from the capture's provenance. What explains only responses that
+/// are stated gives way to a direct method where another one shows, which that has taken off.
+void choose_and_enter_method(const core::Capture& capture,
+                             PreparedCapture& prepared,
+                             Reconstruction& result) {
+    ReconstructSettings& settings = result.settings;
+    if (!settings.solver.spot_m) {
+        settings.solver.spot_m = core::recorded_spot_m(capture).value_or(0.0);
+    }
+    const bool is_auto = settings.method == Method::Auto;
+    MethodChoice choice = choose_method(settings, prepared);
+    settings.method = choice.method;
+    if (is_auto && traits_of(settings).explains_response &&
+        settings.blind_deconvolution == BlindDeconvolution::Auto &&
+        may_tell_response(prepared, settings)) {
+        ReconstructSettings direct = settings;
+        direct.method = kPreferredMethods.front()->method;
+        const PreparationPlan plan = choose_preparation(prepared, direct);
+        const MeanSpectrum spectrum =
+            mean_spectrum(prepared.transient(), plan, prepared.time_axis.bin_width_m);
+        if (shows_response(spectrum, pitch_m(prepared))) {
+            settings.method = direct.method;
+            choice.reason += ", a response that nobody stated";
+        }
+    }
+    result.method = core::enum_name(settings.method);
+    result.reason = choice.reason;
+}
+
 /// Tells a response from the histograms and takes it off, where that is asked for or, as none is
 /// stated, needed.
 ///
@@ -169,34 +192,28 @@ std::optional<std::string> take_off_blind_response(const PreparedCapture& prepar
                                                    PreparationPlan& plan) {
     BlindDeconvolution& choice = settings.blind_deconvolution;
     const bool is_open = choice == BlindDeconvolution::Auto;
-    const bool is_stated = core::is_given(settings.response) || settings.response.is_none;
-    core::require(choice != BlindDeconvolution::On || !core::is_given(settings.response),
-                  "blind_deconvolution",
-                  "on with a response",
-                  "on where no response is known; response=none forgets that of the capture");
-    core::require(choice != BlindDeconvolution::On || !traits_of(settings).explains_response,
-                  "blind_deconvolution",
-                  fmt::format("on with method {}", core::enum_name(settings.method)),
-                  "auto or off for methods that explain a response; response states one");
-    const bool is_short = prepared.time_axis.num_bins < kMinBins;
-    core::require(choice != BlindDeconvolution::On || !is_short,
-                  "blind_deconvolution",
-                  fmt::format("on with {} bins", prepared.time_axis.num_bins),
-                  fmt::format("on for {} bins or more", kMinBins));
-    if (choice == BlindDeconvolution::Auto) choice = BlindDeconvolution::Off;
-    const bool may_tell = !is_stated && !is_short && prepared.wall.grid.has_value();
-    if (is_open && (!may_tell || traits_of(settings).explains_response)) {
-        return std::nullopt;
-    }
     if (!is_open && choice == BlindDeconvolution::Off) return std::nullopt;
+    const bool explains = traits_of(settings).explains_response;
+    if (!is_open) {
+        core::require(!core::is_given(settings.response),
+                      "blind_deconvolution",
+                      "on with a response",
+                      "on where no response is known; response=none forgets that of the capture");
+        core::require(!explains,
+                      "blind_deconvolution",
+                      fmt::format("on with method {}", core::enum_name(settings.method)),
+                      "auto or off for methods that explain a response; response states one");
+        core::require(prepared.time_axis.num_bins >= kMinBins,
+                      "blind_deconvolution",
+                      fmt::format("on with {} bins", prepared.time_axis.num_bins),
+                      fmt::format("on for {} bins or more", kMinBins));
+    }
+    if (is_open) choice = BlindDeconvolution::Off;
+    if (is_open && (explains || !may_tell_response(prepared, settings))) return std::nullopt;
     const core::TimeAxis& axis = prepared.time_axis;
     const MeanSpectrum spectrum = mean_spectrum(prepared.transient(), plan, axis.bin_width_m);
-    if (is_open) {
-        const auto& pitch_m = prepared.wall.grid->pitch_m;
-        const auto slope = spectral_slope(spectrum, std::min(pitch_m[0], pitch_m[1]));
-        if (!slope || *slope < kSlopeOfResponse) return std::nullopt;
-        choice = BlindDeconvolution::On;
-    }
+    if (is_open && !shows_response(spectrum, pitch_m(prepared))) return std::nullopt;
+    choice = BlindDeconvolution::On;
     const BlindResponse response =
         find_blind_response(spectrum, static_cast<std::size_t>(axis.num_bins));
     plan.deconvolution = response.deconvolution;
@@ -251,43 +268,6 @@ void choose_wavelength(const PreparedCapture& prepared,
                           fmt::format("found {:.3g} m", *phasor.wavelength_m),
                           fmt::format("must be at least a bin, {:.3g} m", axis.bin_width_m));
     }
-}
-
-/// Columns at the scan's points or evenly over its footprint, depths at the bins' ranges.
-VolumeAxes choose_axes(const PreparedCapture& prepared,
-                       const core::TimeAxis& axis,
-                       ReconstructSettings& settings) {
-    const WallFrame& wall = prepared.wall;
-    VolumeSettings& volume = settings.volume;
-    const double depth = (*volume.z_range_m)[1] - (*volume.z_range_m)[0];
-    std::array<double, 2> low = wall.min_m;
-    std::array<double, 2> high = wall.max_m;
-    for (int i = 0; i < 2 && wall.grid; ++i) {  // other points may lie outside the grid
-        low[i] = wall.grid->first_m[i] - 0.5 * wall.grid->pitch_m[i];
-        high[i] = low[i] + static_cast<double>(wall.grid->size[i]) * wall.grid->pitch_m[i];
-    }
-    const double size = std::max(high[0] - low[0], high[1] - low[1]);
-    for (int i = 0; i < 2; ++i) {  // points on a line, or one point: a square, or as wide as deep
-        if (high[i] - low[i] > 1e-3 * size && size > 0.0) continue;
-        const double center = 0.5 * (low[i] + high[i]);
-        low[i] = center - 0.5 * (size > 0.0 ? size : depth);
-        high[i] = center + 0.5 * (size > 0.0 ? size : depth);
-    }
-    if (!volume.voxels) {
-        const std::array<std::size_t, 2> columns =
-            wall.grid ? wall.grid->size : std::array{kDefaultColumns, kDefaultColumns};
-        const double step = default_depth_step_m(axis, settings);
-        volume.voxels = {
-            static_cast<int>(columns[0]),
-            static_cast<int>(columns[1]),
-            static_cast<int>(std::clamp(std::round(depth / step), 1.0, double{kMaxVoxelsPerAxis}))};
-    }
-    const auto [nx, ny, nz] = *volume.voxels;
-    const auto [near_m, far_m] = *volume.z_range_m;
-    return {cell_centers(low[0], high[0], static_cast<std::size_t>(nx)),
-            cell_centers(low[1], high[1], static_cast<std::size_t>(ny)),
-            cell_centers(near_m, far_m, static_cast<std::size_t>(nz)),
-            wall.world_from_wall};
 }
 
 void append(std::vector<std::string> more, std::vector<std::string>& texts) {

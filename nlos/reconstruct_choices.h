@@ -3,6 +3,7 @@
 
 #include "nlos/methods/methods.h"
 #include "nlos/preparation/histogram_preparation.h"
+#include "nlos/preparation/second_capture.h"
 #include "nlos/reconstruction/reconstruction.h"
 
 namespace nlos {
@@ -19,6 +20,10 @@ struct ReconstructionPlan {
     VolumeAxes axes;
     FalloffTrial falloff_trial = FalloffTrial::WhereNeeded;
 
+    /// Whether the noise of the capture that it was made for is known.
+    bool knows_noise(const core::Capture& capture) const {
+        return knows_its_noise(capture) || preparation.photon;
+    }
     /// Whether the method gets other histograms than the cropped ones.
     bool changes_histograms() const {
         return preparation.num_bins != prepared.time_axis.num_bins ||

@@ -207,6 +207,11 @@ std::optional<double> spectral_slope(const MeanSpectrum& spectrum, double pitch_
     return -line_slope(bands, begin, end);
 }
 
+bool shows_response(const MeanSpectrum& spectrum, double pitch_m) {
+    const auto slope = spectral_slope(spectrum, pitch_m);
+    return slope && *slope >= kSlopeOfResponse;
+}
+
 BlindResponse find_blind_response(const MeanSpectrum& spectrum, std::size_t num_bins) {
     const double total = spectrum.power[0];
     const double floor = std::max(kModelError, kTimesNoise * spectrum.noise_power / total);

@@ -49,11 +49,13 @@ std::optional<double> spectral_slope(const MeanSpectrum& spectrum, double pitch_
 /// less than 3.8.
 inline constexpr double kSlopeOfResponse = 5.2;
 
+/// Whether a mean spectrum falls off as only behind a response, see spectral_slope().
+bool shows_response(const MeanSpectrum& spectrum, double pitch_m);
+
 /// A response that all histograms share, as they tell it themselves.
 struct BlindResponse {
     std::shared_ptr<const ResponseDeconvolution> deconvolution;
     double delay_m = 0.0;  ///< path length after which half of its light has come
-    std::optional<double> slope;
 };
 
 /// Blind deconvolution: of the responses with the mean spectrum P of the histograms, the one of

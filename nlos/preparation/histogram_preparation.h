@@ -100,6 +100,7 @@ struct PreparationPlan {
     std::shared_ptr<const ResponseDeconvolution> deconvolution = nullptr;
     core::ObservedBins observed = std::nullopt;  ///< before merging
     Taper taper = {};                            ///< likewise
+    std::optional<double> photon = {};           ///< of radiance, what a photon adds to a value
 
     /// The bins of a prepared histogram that were observed, each of them as a whole.
     core::BinRange prepared_range(std::size_t pair) const {

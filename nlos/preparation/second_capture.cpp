@@ -40,8 +40,10 @@ bool knows_its_noise(const core::Capture& capture) {
     return std::ranges::any_of(capture.variance->values(), [](float v) { return v > 0.0F; });
 }
 
-std::optional<core::Capture> measure_again(const core::Capture& capture) {
-    if (!knows_its_noise(capture)) return std::nullopt;
+std::optional<core::Capture> measure_again(const core::Capture& capture,
+                                           std::optional<double> photon) {
+    const bool is_known = knows_its_noise(capture);
+    if (!is_known && !photon) return std::nullopt;
     core::Capture again;
     again.scan = capture.scan;
     again.time_axis = capture.time_axis;
@@ -56,7 +58,8 @@ std::optional<core::Capture> measure_again(const core::Capture& capture) {
             if (capture.unit == core::TransientUnit::Counts) {
                 histogram[bin] = static_cast<float>(resampled_count(rng, value));
             } else {
-                const double variance = capture.variance->histogram(pair)[bin];
+                const double variance = is_known ? double{capture.variance->histogram(pair)[bin]}
+                                                 : *photon * std::max(0.0, value);
                 histogram[bin] =
                     static_cast<float>(value + std::sqrt(variance) * normal_deviate(rng));
             }

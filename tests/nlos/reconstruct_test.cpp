@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruct.h"
 
+#include "nlos/detector/count_sampling.h"
+#include "renderer/core/random.h"
 #include "renderer/core/settings/settings_json.h"
 #include "renderer/core/system/parallel.h"
 #include "renderer/core/system/process.h"
@@ -163,6 +165,30 @@ TEST(Reconstruct, ReportsDeviationsOfDepthWhereTheNoiseIsKnown) {
     capture.unit = core::TransientUnit::Counts;
     for (float& value : capture.transient.values()) value = std::round(50.0F * value);
     EXPECT_GT(num_reported(capture), 0);
+}
+
+// Means of 20 frames: values are no whole numbers, and the background tells what a photon adds.
+TEST(Reconstruct, FindsInMeansOfCountsWhatItFindsInCounts) {
+    core::Capture counts = example();
+    counts.unit = core::TransientUnit::Counts;
+    core::Rng rng(3, 0, 0);
+    for (float& value : counts.transient.values()) {
+        value = static_cast<float>(sample_poisson(rng, 200.0 * double{value} + 4.0));
+    }
+    core::Capture means = counts;
+    means.unit = core::TransientUnit::Radiance;
+    for (float& value : means.transient.values()) value /= 20.0F;
+    const auto of = [](const core::Capture& capture) {
+        return reconstruct(capture, with({"method=lct", "snr=1"}), {});
+    };
+    const Reconstruction by_counts = of(counts);
+    const Reconstruction by_means = of(means);
+    ASSERT_EQ(by_means.depth_sigma_m.size(), by_counts.depth_sigma_m.size());
+    EXPECT_GT(by_counts.points.positions.size(), 0U);
+    for (std::size_t i = 0; i < by_counts.depth.depth_m.size(); ++i) {
+        // Halves of photons and normal deviates are two ways to draw the same noise.
+        EXPECT_NEAR(by_means.surface_probability[i], by_counts.surface_probability[i], 0.25) << i;
+    }
 }
 
 TEST(Reconstruct, AutoLooksAtTheCaptureAndSaysWhatItFound) {

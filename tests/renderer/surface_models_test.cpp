@@ -39,7 +39,7 @@ std::vector<Material> all_materials(const std::vector<double>& roughnesses) {
     return all;
 }
 
-std::string name_of(const testing::TestParamInfo<Material>& info) {
+std::string material_name(const testing::TestParamInfo<Material>& info) {
     std::string name;
     for (const char c : info.param.name) {
         if (std::isalnum(static_cast<unsigned char>(c)) != 0) name += c;
@@ -144,7 +144,10 @@ TEST_P(SurfaceModels, OfCamerasByPathsAndByEllipsoidalAreTheSame) {
 INSTANTIATE_TEST_SUITE_P(All,
                          AnySurfaceModels,
                          testing::ValuesIn(all_materials({0.7, 0.4, 0.16})),
-                         name_of);
-INSTANTIATE_TEST_SUITE_P(All, SurfaceModels, testing::ValuesIn(all_materials({0.7, 0.4})), name_of);
+                         material_name);
+INSTANTIATE_TEST_SUITE_P(All,
+                         SurfaceModels,
+                         testing::ValuesIn(all_materials({0.7, 0.4})),
+                         material_name);
 
 }  // namespace

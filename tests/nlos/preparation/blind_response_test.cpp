@@ -191,6 +191,21 @@ TEST(BlindResponse, IsTakenOffByDefaultWhereItIsThereAndSaidSo) {
     EXPECT_GT(with, without);
 }
 
+// What explains its data explains no response that it does not know.
+TEST(BlindResponse, AutoTakesADirectMethodBehindOne) {
+    const core::Capture clean = random_surfaces(3);
+    const core::Capture blurred = behind_a_slab(clean, 4.0);
+    EXPECT_EQ(reconstruct(counts_from(clean, 3000.0), {}, {}).settings.method, Method::Solver);
+    const Reconstruction behind = reconstruct(counts_from(blurred, 30000.0), {}, {});
+    EXPECT_EQ(behind.settings.method, Method::Lct);
+    EXPECT_EQ(behind.settings.blind_deconvolution, BlindDeconvolution::On);
+    EXPECT_NE(behind.reason.find("a response that nobody stated"), std::string::npos);
+    ReconstructSettings stated;
+    core::apply_override(stated, "response.jitter_fwhm_ps=300");
+    EXPECT_EQ(reconstruct(counts_from(blurred, 30000.0), stated, {}).settings.method,
+              Method::Solver);
+}
+
 TEST(BlindResponse, ChangesNoBitOfCapturesWithoutOne) {
     for (const double photons : {0.0, 3000.0}) {
         const core::Capture clean = random_surfaces(5);

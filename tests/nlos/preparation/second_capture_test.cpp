@@ -23,8 +23,10 @@ core::Capture even_capture(core::TransientUnit unit, float value) {
 }
 
 /// Expects differences of no mean and this variance, within 5 of their own deviations.
-void expect_noise(const core::Capture& capture, double variance) {
-    const core::Capture again = *measure_again(capture);
+void expect_noise(const core::Capture& capture,
+                  double variance,
+                  std::optional<double> photon = std::nullopt) {
+    const core::Capture again = *measure_again(capture, photon);
     const auto before = capture.transient.values();
     const auto after = again.transient.values();
     double sum = 0.0;
@@ -53,6 +55,11 @@ TEST(SecondCapture, AddsTheNoiseOfRadianceOnceMore) {
     core::Capture capture = even_capture(core::TransientUnit::Radiance, 3.0F);
     capture.variance = capture.transient;
     expect_noise(capture, 3.0);
+}
+
+TEST(SecondCapture, AddsTheNoiseOfPhotonsOnceMore) {
+    const core::Capture capture = even_capture(core::TransientUnit::Radiance, 3.0F);
+    expect_noise(capture, 0.75, 0.25);
 }
 
 TEST(SecondCapture, OfUnknownNoiseIsNone) {
