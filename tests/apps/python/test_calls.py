@@ -74,10 +74,10 @@ def test_doubts_become_warnings(letter):
 
 def test_orders_that_are_left_out_are_said(letter, tmp_path):
     assert nlos.render(letter).orders_left_out is None
-    capture = nlos.render(letter, max_bounces=5, target_error=0.04)
+    capture = nlos.render(letter, max_bounces=5, target_error=0.02)
     orders = capture.orders_left_out
     assert (orders["first"], orders["last"]) == (4, 5)
-    assert 0.0 < orders["share"] and 0.0 < orders["error"] < 0.04
+    assert 0.0 < orders["share"] and 0.0 < orders["error"] < 0.02
     assert "left out: bounces of orders 4 to 5" in repr(capture)
     capture.write(tmp_path / "c.h5")
     assert nlos.read(tmp_path / "c.h5").orders_left_out == orders
