@@ -5,12 +5,15 @@
 #include "nlos/preparation/memory_limit.h"
 #include "nlos/preparation/place_resolution.h"
 #include "nlos/reconstruct_choices.h"
+#include "nlos/setup_uncertainty.h"
+#include "renderer/core/statistics.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/core/system/process.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -172,6 +175,43 @@ void take_surface(const ReconstructionPlan& plan, const Volume* again, Reconstru
     result.points = surface_points(result.depth);
 }
 
+/// Adds what the uncertainty of the set-up does to the surface. Methods that iterate give way to a
+/// direct one: what moves with the set-up is geometry, which they share.
+void add_setup(const core::Capture& capture,
+               const ReconstructionPlan& plan,
+               std::size_t num_slabs,
+               const core::Progress& progress,
+               Reconstruction& result) {
+    ReconstructSettings settings = result.settings;
+    if (!traits_of(settings).least_work) {
+        settings.method = direct_method(plan.prepared, settings.volume);
+        settings.prior = Prior::None;
+        if (settings.falloff == Falloff::Facing) settings.falloff = Falloff::Diffuse;
+    }
+    result.setup =
+        propagate_setup(capture, result.depth, settings.setup, [&](const core::Capture& moved) {
+            Reconstruction other;
+            other.settings = settings;
+            const ReconstructionPlan own = choose(moved, other);
+            const std::optional<core::Transient> histograms =
+                prepare(own, own.prepared.transient());
+            const MethodInput input = input_of(
+                own, histograms ? *histograms : own.prepared.transient(), other.settings, progress);
+            enter_falloff(input, own.falloff_trial, other);
+            return traits_of(other.settings).run(input, other.settings, num_slabs);
+        });
+    std::vector<double>& sigma_m = result.depth_sigma_m;
+    if (!result.setup || sigma_m.empty()) return;
+    std::vector<double> noise_m;
+    for (std::size_t i = 0; i < sigma_m.size(); ++i) {
+        if (!result.depth.is_foreground(i)) continue;
+        noise_m.push_back(sigma_m[i]);
+        const double setup_m = result.setup->sigma_m[i];
+        sigma_m[i] = std::hypot(sigma_m[i], std::isfinite(setup_m) ? setup_m : 0.0);
+    }
+    result.setup->noise_sigma_m = core::median(std::move(noise_m));
+}
+
 }  // namespace
 
 Reconstruction reconstruct(const core::Capture& capture,
@@ -187,6 +227,8 @@ Reconstruction reconstruct(const core::Capture& capture,
     const core::Capture mended = faults.empty() ? core::Capture{} : leave_out(faults, capture);
     const core::Capture& used = faults.empty() ? capture : mended;
     const ReconstructionPlan plan = choose(used, result);
+    std::vector<std::string> doubts = warnings_of(used, plan, result.settings);
+    result.warnings.insert(result.warnings.begin(), doubts.begin(), doubts.end());
     if (auto text = describe(faults)) {
         result.warnings.insert(result.warnings.begin(), std::move(*text));
     }
@@ -204,9 +246,12 @@ Reconstruction reconstruct(const core::Capture& capture,
 
     core::Progress second_run = progress.part(0.5, 1.0);
     second_run.announce = {};
-    const std::optional<Volume> again =
-        measured_again(used, plan, result.settings, num_slabs, second_run);
-    take_surface(plan, again ? &*again : nullptr, result);
+    {
+        const std::optional<Volume> again =
+            measured_again(used, plan, result.settings, num_slabs, second_run);
+        take_surface(plan, again ? &*again : nullptr, result);
+    }
+    add_setup(used, plan, num_slabs, second_run, result);
     result.seconds = watch.seconds();
     result.peak_bytes = core::peak_rss_bytes();
     return result;

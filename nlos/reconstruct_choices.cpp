@@ -6,6 +6,7 @@
 #include "nlos/preparation/checks/capture_check.h"
 #include "nlos/preparation/direct_response.h"
 #include "nlos/preparation/wiener_snr.h"
+#include "nlos/setup_uncertainty.h"
 #include "nlos/volume_choices.h"
 #include "renderer/core/capture/recorded_detector.h"
 
@@ -299,18 +300,6 @@ std::optional<double> data_resolution_m(const PreparedCapture& prepared,
            std::max(1.0, response_m / prepared.time_axis.bin_width_m);
 }
 
-std::vector<std::string> warnings_of(const core::Capture& capture,
-                                     const ReconstructionPlan& plan,
-                                     const ReconstructSettings& settings) {
-    std::vector<std::string> warnings = capture_warnings(capture);
-    if (auto text = core::detector_warning(capture)) warnings.push_back(std::move(*text));
-    if (auto text = unobserved_warning(settings, plan.observed, plan.time_axis.num_bins)) {
-        warnings.push_back(std::move(*text));
-    }
-    if (auto text = directions_warning(plan.prepared)) warnings.push_back(std::move(*text));
-    return warnings;
-}
-
 }  // namespace
 
 ReconstructionPlan choose(const core::Capture& capture, Reconstruction& result) {
@@ -321,6 +310,7 @@ ReconstructionPlan choose(const core::Capture& capture, Reconstruction& result) 
         settings.method = kStatisticalMethod.method;
     }
     const bool is_auto = settings.method == Method::Auto;
+    enter_uncertainties(capture, settings.setup);
     settings.response = core::resolve_response(settings.response, capture, "response");
     if (is_auto) leave_out_direct_return(capture, result);
 
@@ -352,10 +342,21 @@ ReconstructionPlan choose(const core::Capture& capture, Reconstruction& result) 
     plan.axes = choose_axes(plan.prepared, plan.time_axis, settings);
     plan.dark_from_m =
         has_range ? plan.time_axis.opl_end_m() : dark_from_m(plan.prepared, plan.preparation);
-    result.warnings = warnings_of(capture, plan, settings);
     if (beside) result.warnings.push_back(*beside);
     if (blind) result.warnings.push_back(*blind);
     return plan;
+}
+
+std::vector<std::string> warnings_of(const core::Capture& capture,
+                                     const ReconstructionPlan& plan,
+                                     const ReconstructSettings& settings) {
+    std::vector<std::string> warnings = capture_warnings(capture);
+    if (auto text = core::detector_warning(capture)) warnings.push_back(std::move(*text));
+    if (auto text = unobserved_warning(settings, plan.observed, plan.time_axis.num_bins)) {
+        warnings.push_back(std::move(*text));
+    }
+    if (auto text = directions_warning(plan.prepared)) warnings.push_back(std::move(*text));
+    return warnings;
 }
 
 }  // namespace nlos

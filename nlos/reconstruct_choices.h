@@ -33,10 +33,15 @@ struct ReconstructionPlan {
 };
 
 /// Chooses what `result.settings` leave open, all but the falloff, which prepared histograms tell,
-/// and enters it there; says what `auto` found, and warnings.
+/// and enters it there; says what `auto` found, and warns of what was chosen.
 ///
 /// capture   must outlive the plan
 /// throws    core::Error when the method cannot serve or a setting does not fit the capture
 ReconstructionPlan choose(const core::Capture& capture, Reconstruction& result);
+
+/// What looks wrong about a capture, for people.
+std::vector<std::string> warnings_of(const core::Capture& capture,
+                                     const ReconstructionPlan& plan,
+                                     const ReconstructSettings& settings);
 
 }  // namespace nlos

@@ -4,6 +4,7 @@
 #include "nlos/formats/volume_file.h"
 #include "nlos/pictures/pictures.h"
 #include "nlos/reconstruction/surface_mesh.h"
+#include "nlos/setup_uncertainty.h"
 #include "renderer/core/mesh_formats/ply_writer.h"
 #include "renderer/core/settings/settings_json.h"
 
@@ -47,6 +48,15 @@ std::optional<Array<double>> column_view(nb::handle self) {
 nb::tuple mesh_of(const Reconstruction& result) {
     core::TriangleMesh mesh = nlos::surface_mesh(result.depth);
     return nb::make_tuple(array_of(std::move(mesh.vertices)), array_of(std::move(mesh.triangles)));
+}
+
+nb::object setup_of(const Reconstruction& result) {
+    if (!result.setup) return nb::none();
+    core::Json setup = core::write_value(result.settings.setup);
+    setup["depth_sigma_m"] = {{"noise", core::write_value(result.setup->noise_sigma_m)},
+                              {"setup", result.setup->depth_sigma_m}};
+    setup["text"] = nlos::describe(*result.setup);
+    return python_from_json(setup);
 }
 
 void write(const Reconstruction& result, nb::handle target) {
@@ -124,6 +134,11 @@ void bind_reconstruction(nb::module_& module) {
             "settings",
             [](const Reconstruction& r) { return python_from_json(core::write_value(r.settings)); },
             "with every choice filled in")
+        .def_prop_ro("setup",
+                     &setup_of,
+                     "what an uncertain set-up (reconstruct(..., setup={...})) does to depths, "
+                     "which depth_sigma_m counts: dict of its standard deviations, the medians of "
+                     "what noise and set-up make of depths [m] and a text; None: it is exact")
         .def("mesh",
              &mesh_of,
              "The surface as (vertices (N, 3) float64, world [m]; faces (M, 3) uint32).")

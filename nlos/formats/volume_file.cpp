@@ -59,6 +59,23 @@ void write_depth(Hdf5Writer& file, const Shape& columns, const Reconstruction& r
     }
 }
 
+/// What an uncertain set-up does to depths: medians as attributes, and every column's.
+void write_setup(Hdf5Writer& file, const Shape& columns, const Reconstruction& reconstruction) {
+    if (!reconstruction.setup) return;
+    const SetupReport& report = *reconstruction.setup;
+    file.create_group("setup");
+    file.write("setup/depth_sigma_m", columns, report.sigma_m);
+    const auto note = [&](const std::string& name, double value) {
+        file.write_attribute("setup", name, {}, {&value, 1});
+    };
+    note("depth_sigma_setup_m", report.depth_sigma_m);
+    if (report.noise_sigma_m) note("depth_sigma_noise_m", *report.noise_sigma_m);
+    SetupSettings setup = reconstruction.settings.setup;
+    for_each_field(setup, [&](const char* name, const std::optional<double>& sigma, const auto&) {
+        note(name, sigma.value_or(0.0));
+    });
+}
+
 void write_points(Hdf5Writer& file, const core::PointCloud& points) {
     const Shape shape{points.positions.size()};
     write_vectors(file, "points", shape, points.positions, kWorldPositions);
@@ -203,6 +220,7 @@ void write_volume(const std::string& path, const Reconstruction& reconstruction)
     write_axis(file, "y_m", axes.y_m, pose);
     write_axis(file, "z_m", axes.z_m, pose);
     write_depth(file, columns, reconstruction);
+    write_setup(file, columns, reconstruction);
     file.write("max_projection", columns, max_projection(volume));
     if (!volume.normals.empty()) {
         write_vectors(file, "normals", columns, volume.normals, kWallDirections);

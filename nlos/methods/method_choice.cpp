@@ -136,6 +136,10 @@ MethodChoice choose_method(const ReconstructSettings& settings, PreparedCapture&
     return choice;
 }
 
+Method direct_method(const PreparedCapture& prepared, const VolumeSettings& volume) {
+    return preferred_method(prepared, volume).method;
+}
+
 std::optional<std::string> unobserved_warning(const ReconstructSettings& settings,
                                               const core::ObservedBins& observed,
                                               int num_bins) {

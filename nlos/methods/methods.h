@@ -120,6 +120,9 @@ struct MethodChoice {
 /// throws   core::Error when the method set cannot serve; names one that can
 MethodChoice choose_method(const ReconstructSettings& settings, PreparedCapture& prepared);
 
+/// The method that serves without iterating, the first of kPreferredMethods.
+Method direct_method(const PreparedCapture& prepared, const VolumeSettings& volume);
+
 /// What a method that works by transforms makes of bins that were not observed, for people; nothing
 /// for other methods, which leave them out.
 ///

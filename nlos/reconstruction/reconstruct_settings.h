@@ -3,6 +3,7 @@
 
 #include "nlos/reconstruction/method.h"
 #include "renderer/core/capture/instrument_response.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <array>
 #include <optional>
@@ -80,6 +81,15 @@ struct SolverSettings {
     std::optional<int> max_iterations;  ///< empty: by the solver
 };
 
+/// How uncertain the set-up is, as standard deviations; empty fields: see enter_uncertainties().
+/// The text `none` stands for 0 throughout.
+struct SetupSettings {
+    std::optional<double> time_zero_sigma_ps;
+    std::optional<double> wall_scale_sigma;
+    std::optional<double> spot_sigma_m;
+    bool is_none = false;
+};
+
 /// How to reconstruct.
 struct ReconstructSettings {
     Method method = Method::Auto;
@@ -101,7 +111,32 @@ struct ReconstructSettings {
     double mask_threshold = 0.5;      ///< probability of a surface: foreground of depth and points
     std::optional<double> memory_gb;  ///< to take at most; empty: what the machine has
     BlindDeconvolution blind_deconvolution = BlindDeconvolution::Auto;
+    SetupSettings setup;
 };
+
+template <class Visitor>
+void for_each_field(SetupSettings& s, Visitor&& visit) {
+    visit("time_zero_sigma_ps",
+          s.time_zero_sigma_ps,
+          core::at_least(0,
+                         "standard deviation of time zero [ps]; null: 10 of measured captures, 0 "
+                         "of others"));
+    visit("wall_scale_sigma",
+          s.wall_scale_sigma,
+          core::at_least(0,
+                         "standard deviation of the wall's scale, as a fraction; null: 0.003 of "
+                         "measured captures, 0 of others"));
+    visit("spot_sigma_m",
+          s.spot_sigma_m,
+          core::at_least(0,
+                         "standard deviation of the laser spots along the wall's x and along y, of "
+                         "scans that are not confocal [m]; null: 0.002 of measured captures, 0 of "
+                         "others"));
+}
+
+/// Of an object with named fields, or the text `none`.
+void read_value(const core::Json& json, const std::string& where, SetupSettings& settings);
+core::Json write_value(const SetupSettings& settings);
 
 template <class Visitor>
 void for_each_field(VolumeSettings& s, Visitor&& visit) {
@@ -211,6 +246,9 @@ void for_each_field(ReconstructSettings& s, Visitor&& visit) {
           "take off a response that all histograms share, told from these alone (all methods but "
           "solver): a diffusing medium, a detector's tail; auto: where no response is stated and "
           "the spectrum of the histograms falls off as no surface's does");
+    visit("setup",
+          s.setup,
+          "how uncertain the set-up is, which depth_sigma_m counts; none: it is exact");
     visit("ambient",
           s.ambient,
           "constant background light, and bins behind the signal's end; auto: taken off counts");

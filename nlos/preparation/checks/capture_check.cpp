@@ -218,7 +218,7 @@ std::optional<std::string> mistakes(const core::Capture& capture,
         text += (text.empty() ? "" : "; or ") + describe_mistake(capture, correction);
     }
     if (text.empty()) return std::nullopt;
-    return text;
+    return "set-up: " + text;
 }
 
 /// Counts that are called radiance, and radiance that is called counts.

@@ -172,3 +172,14 @@ def test_help_tells_shapes_and_units():
         assert getattr(nlos, name).__doc__, name
     assert "(T, Sx, Sy)" in nlos.Capture.H.__doc__
     assert "metres" in nlos.reconstruct.__doc__
+
+
+def test_an_uncertain_setup_widens_depths(letter):
+    counts = nlos.simulate_noise(nlos.render(letter), photons_per_point=3000)
+    exact = nlos.reconstruct(counts, "lct")
+    assert exact.setup is None
+    wide = nlos.reconstruct(counts, "lct", setup={"time_zero_sigma_ps": 50})
+    assert wide.setup["time_zero_sigma_ps"] == 50 and "time zero" in wide.setup["text"]
+    # 15 mm of path, a third to a half of it in depth.
+    assert 0.004 < wide.setup["depth_sigma_m"]["setup"] < 0.009
+    assert np.nanmedian(wide.depth_sigma_m) > np.nanmedian(exact.depth_sigma_m)
