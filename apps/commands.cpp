@@ -8,7 +8,7 @@ namespace apps {
 // Each stands in the file of its name.
 extern const CommandRow kRenderCommand, kConvertCommand, kSimulateNoiseCommand, kReconstructCommand,
     kFitCommand, kCalibrateCommand, kCompareCommand, kInfoCommand, kReportCommand, kViewCommand,
-    kGenerateCommand, kSweepCommand, kTrackCommand, kDemoCommand;
+    kGenerateCommand, kSweepCommand, kTrackCommand, kDemoCommand, kHelpCommand, kSceneCommand;
 
 namespace {
 
@@ -22,7 +22,8 @@ constexpr CommandRow kManualCommand{
     "Write manual pages, completion for bash and zsh, and a reference of settings",
     "nlos manual -o out/manual"};
 
-constexpr std::array kCommands{&kRenderCommand,
+constexpr std::array kCommands{&kSceneCommand,
+                               &kRenderCommand,
                                &kConvertCommand,
                                &kSimulateNoiseCommand,
                                &kReconstructCommand,
@@ -37,7 +38,8 @@ constexpr std::array kCommands{&kRenderCommand,
                                &kSweepCommand,
                                &kTrackCommand,
                                &kDemoCommand,
-                               &kManualCommand};
+                               &kManualCommand,
+                               &kHelpCommand};
 
 }  // namespace
 

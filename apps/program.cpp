@@ -41,6 +41,15 @@ void hand_over(const CommandLine& line) {
     }
 }
 
+// `help COMMAND` as `COMMAND --help`.
+void take_help_as_option(std::vector<std::string>& arguments) {
+    const auto word = std::ranges::find_if(
+        arguments, [](const std::string& argument) { return !argument.starts_with('-'); });
+    if (word == arguments.end() || *word != "help") return;
+    arguments.erase(word);
+    arguments.emplace_back("--help");
+}
+
 // Runs the command; its callback is called within parse().
 void run(CommandLine& line, const std::map<std::string, void (*)(Command&)>& beside) {
     Command app("nlos",
@@ -93,6 +102,7 @@ int run_nlos(int argc, char** argv, const std::map<std::string, void (*)(Command
         if (argument == "--json") output_settings().json = true;
     }
     try {
+        take_help_as_option(line.arguments);
         if (beside.empty()) hand_over(line);
         handle_signals();
         run(line, beside);

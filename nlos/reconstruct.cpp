@@ -127,7 +127,12 @@ std::optional<Volume> measured_again(const core::Capture& capture,
 
 /// Leaves out surfaces at places that the scan tells from no other across the volume's width:
 /// confident as they look, they may be anywhere on a shell.
-void leave_out_untold(const PreparedCapture& prepared, Surface& surface) {
+///
+/// middle_m   depth to look at in columns without a surface
+/// returns    per column, whether the scan tells something there
+std::vector<std::uint8_t> leave_out_untold(const PreparedCapture& prepared,
+                                           double middle_m,
+                                           Surface& surface) {
     const PlaceResolution resolution(prepared.scan, prepared.time_axis.bin_width_m);
     const WallFrame& wall = prepared.wall;
     core::DepthMap& depth = surface.depth;
@@ -135,17 +140,25 @@ void leave_out_untold(const PreparedCapture& prepared, Surface& surface) {
                                      wall.max_m[1] - wall.min_m[1],
                                      depth.x_m.back() - depth.x_m.front(),
                                      depth.y_m.back() - depth.y_m.front()});
+    std::vector<std::uint8_t> told(depth.depth_m.size(), 1);
     core::parallel_for(depth.x_m.size(), [&](std::size_t ix) {
         for (std::size_t iy = 0; iy < depth.y_m.size(); ++iy) {
             const std::size_t i = depth.index(ix, iy);
-            if (!depth.is_foreground(i)) continue;
-            if (resolution.at(depth.point_world(ix, iy)) <= width_m) continue;
+            const bool is_foreground = depth.is_foreground(i);
+            const core::Vec3 place =
+                is_foreground
+                    ? depth.point_world(ix, iy)
+                    : depth.world_from_wall * core::Vec3(depth.x_m[ix], depth.y_m[iy], middle_m);
+            if (resolution.at(place) <= width_m) continue;
+            told[i] = 0;
+            if (!is_foreground) continue;
             depth.depth_m[i] = std::numeric_limits<double>::quiet_NaN();
             depth.normals[i].setZero();
             surface.probability[i] = 0.0;
             if (!surface.depth_sigma_m.empty()) surface.depth_sigma_m[i] = depth.depth_m[i];
         }
     });
+    return told;
 }
 
 /// A method that knows normals knows them better than a plane through neighbouring columns does.
@@ -167,7 +180,8 @@ void take_surface(const ReconstructionPlan& plan, const Volume* again, Reconstru
     const bool is_confocal_grid = prepared.scan.is_confocal() && prepared.scan.sensing.grid;
     if (!is_confocal_grid || !prepared.conversion.empty()) errors.front = 0.0;
     Surface surface = find_surface(result.volume, again, errors, result.settings.mask_threshold);
-    leave_out_untold(prepared, surface);
+    const std::vector<double>& z_m = result.volume.axes.z_m;
+    result.observed = leave_out_untold(prepared, z_m[z_m.size() / 2], surface);
     result.depth = std::move(surface.depth);
     result.surface_probability = std::move(surface.probability);
     result.depth_sigma_m = std::move(surface.depth_sigma_m);

@@ -2,6 +2,7 @@
 #include "apps/commands/render_job.h"
 
 #include "apps/arguments.h"
+#include "apps/file_kind.h"
 #include "apps/progress_bar.h"
 #include "apps/terminal.h"
 #include "apps/version.h"
@@ -188,6 +189,19 @@ void tell_of_light(const renderer::LightRange& light,
     }
 }
 
+/// A mesh is no scene: it does not say where wall and scan are.
+void refuse_mesh(const std::string& path) {
+    if (core::file_suffix(path) == ".json" || !std::filesystem::exists(path)) return;
+    const FileKind kind = kind_of_file(path);
+    core::require(
+        kind != FileKind::Geometry && kind != FileKind::PointCloud,
+        path,
+        "a mesh",
+        fmt::format("a scene (.json), which says where wall and scan are: `nlos scene {} -o "
+                    "scene.json` proposes one",
+                    core::printable(path)));
+}
+
 }  // namespace
 
 std::string estimator_names(const renderer::RenderResult& result) {
@@ -245,6 +259,7 @@ renderer::RenderResult render_to_file(const std::string& scene_path,
                                       const std::string& calibration_path) {
     nlos::check_capture_suffix(capture_path);
     core::check_targets({capture_path}, {scene_path, calibration_path});
+    refuse_mesh(scene_path);
     ProgressBar bar("render");
     RenderInput input;
     input.scene_name = std::filesystem::absolute(scene_path).lexically_normal().string();

@@ -57,6 +57,9 @@ void write_depth(Hdf5Writer& file, const Shape& columns, const Reconstruction& r
     if (!reconstruction.surface_probability.empty()) {
         file.write("surface_probability", columns, reconstruction.surface_probability);
     }
+    if (!reconstruction.observed.empty()) {
+        file.write("observed", columns, reconstruction.observed);
+    }
 }
 
 /// What an uncertain set-up does to depths: medians as attributes, and every column's.

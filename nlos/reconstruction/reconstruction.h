@@ -34,9 +34,11 @@ struct Reconstruction {
     Volume volume;
     core::DepthMap depth;  ///< sub-bin depth of each column's peak; NaN = background
     std::vector<double> surface_probability;  ///< per column [x][y]; empty: not given
-    std::vector<double> depth_sigma_m;  ///< of `depth`, by noise and set-up; NaN = background;
-                                        ///< empty: noise not known
-    std::optional<SetupReport> setup;   ///< where it is uncertain
+    std::vector<double> depth_sigma_m;   ///< of `depth`, by noise and set-up; NaN = background;
+                                         ///< empty: noise not known
+    std::vector<std::uint8_t> observed;  ///< per column, 1 where the scan's geometry tells places
+                                         ///< from others across the volume, else 0
+    std::optional<SetupReport> setup;    ///< where it is uncertain
     core::PointCloud points;  ///< foreground of `depth` in world coordinates, normals to the wall
     /// How far apart the scan tells positions at the middle of its light, in the direction told
     /// worst [m]: the same for every method; nothing where no distance is enough or nobody knows.

@@ -158,6 +158,38 @@ TEST_F(CommandLine, HelpOnEveryLevelEndsWithAnExampleThatWorks) {
     EXPECT_NE(run("render --help").out.find("time_axis.bin_width_m = 0.008"), std::string::npos);
 }
 
+// A mesh anywhere, in any unit, renders by the scene that is proposed for it, its light on the
+// axis.
+TEST_F(CommandLine, AMeshGetsASceneThatRenders) {
+    write_file_bytes(file("plate.obj"),
+                     "v 100 200 300\nv 140 200 300\nv 140 230 310\nv 100 230 310\n"
+                     "f 1 4 3 2\n");
+    expect_bad_input("render " + file("plate.obj") + " -o " + file("c.h5"), "nlos scene ");
+    const std::string scene = file("scene.json");
+    const Outcome proposed =
+        run("scene " + file("plate.obj") + " -o " + scene + " --unit-m 0.01 --json");
+    ASSERT_EQ(proposed.status, 0) << proposed.err;
+    const core::Json json = core::read_json_file(scene);
+    EXPECT_EQ(json["geometry"], "plate.obj");
+    EXPECT_NEAR(json["relay_wall"]["center_m"][2].get<double>(), 2.6, 1e-9);
+    EXPECT_NEAR(json["relay_wall"]["size_m"][0].get<double>(), 0.8, 1e-9);
+    ASSERT_EQ(
+        run("render " + scene + " -o " + file("c.h5") + " --set scan.sensing_points=[4,4]").status,
+        0);
+    const core::Capture capture = nlos::read_capture(file("c.h5"));
+    EXPECT_GT(*std::ranges::max_element(capture.transient.values()), 0.0F);
+    expect_bad_input("scene none.obj -o " + scene, "none.obj");
+    expect_bad_input("scene " + file("plate.obj") + " -o " + file("s.h5"), ".json");
+}
+
+TEST_F(CommandLine, HelpIsACommandToo) {
+    EXPECT_EQ(run("help").out, run("--help").out);
+    EXPECT_EQ(run("help render").out, run("render --help").out);
+    EXPECT_EQ(run("help bench render").out, run("bench render --help").out);
+    EXPECT_EQ(run("help reder").status, 2);
+    EXPECT_NE(run("help reder").err.find("did you mean"), std::string::npos);
+}
+
 TEST_F(CommandLine, InfoSaysWhereResultsComeFrom) {
     EXPECT_NE(run("info data/letter.h5").out.find("  command: nlos render scenes/letter"),
               std::string::npos);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "nlos/reconstruct.h"
 
+#include "nlos/containers/array_reader.h"
 #include "nlos/detector/count_sampling.h"
+#include "nlos/formats/volume_file.h"
 #include "renderer/core/random.h"
 #include "renderer/core/settings/settings_json.h"
 #include "renderer/core/system/parallel.h"
@@ -11,6 +13,7 @@
 #include "tests/support/error_message.h"
 #include "tests/support/example_capture.h"
 #include "tests/support/statistics.h"
+#include "tests/support/temporary_folder.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -363,6 +366,18 @@ TEST(Reconstruct, ServesASingleWallPoint) {
     const Reconstruction result = reconstruct(capture, with({"volume.voxels=[8,8,8]"}), {});
     EXPECT_EQ(result.method, "bp");
     for (const float value : result.volume.values) EXPECT_TRUE(std::isfinite(value));
+    EXPECT_EQ(result.observed, std::vector<std::uint8_t>(64, 0));
+}
+
+TEST(Reconstruct, SaysWhereAScanTellsPlaces) {
+    const Reconstruction result = reconstruct(example(), {}, {});
+    EXPECT_EQ(result.observed, std::vector<std::uint8_t>(256, 1));
+    const test_support::TemporaryFolder folder;
+    const std::string path = folder.file("v.h5");
+    write_volume(path, result);
+    const ArrayReader file(path);
+    EXPECT_EQ(file.shape("observed"), (Shape{16, 16}));
+    EXPECT_EQ(file.read_doubles("observed", {16, 16}), std::vector<double>(256, 1.0));
 }
 
 TEST(Reconstruct, SaysThatFewPairsTellDistancesOnly) {

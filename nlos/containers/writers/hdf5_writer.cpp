@@ -126,6 +126,13 @@ void Hdf5Writer::write(const std::string& name, const Shape& shape, std::span<co
     write_dataset(name, H5T_NATIVE_INT, shape, values.data());
 }
 
+void Hdf5Writer::write(const std::string& name,
+                       const Shape& shape,
+                       std::span<const std::uint8_t> values) {
+    assert(values.size() == total_bytes(shape, 1));
+    write_dataset(name, H5T_NATIVE_UINT8, shape, values.data());
+}
+
 void Hdf5Writer::write_real(const std::string& name, double value) {
     write(name, {}, {&value, 1});
 }

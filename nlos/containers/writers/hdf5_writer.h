@@ -34,6 +34,7 @@ class Hdf5Writer {
     void write(const std::string& name, const Shape& shape, std::span<const float> values);
     void write(const std::string& name, const Shape& shape, std::span<const double> values);
     void write(const std::string& name, const Shape& shape, std::span<const int> values);
+    void write(const std::string& name, const Shape& shape, std::span<const std::uint8_t> values);
     void write_real(const std::string& name, double value);             ///< scalar float64
     void write_bool(const std::string& name, bool value);               ///< as h5py writes a bool
     void write_text(const std::string& name, const std::string& text);  ///< UTF-8, any length
