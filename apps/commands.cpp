@@ -22,8 +22,8 @@ constexpr CommandRow kManualCommand{
     "Write manual pages, completion for bash and zsh, and a reference of settings",
     "nlos manual -o out/manual"};
 
-constexpr std::array kCommands{&kSceneCommand,
-                               &kRenderCommand,
+constexpr std::array kCommands{&kRenderCommand,
+                               &kSceneCommand,
                                &kConvertCommand,
                                &kSimulateNoiseCommand,
                                &kReconstructCommand,

@@ -46,6 +46,10 @@ void take_help_as_option(std::vector<std::string>& arguments) {
     const auto word = std::ranges::find_if(
         arguments, [](const std::string& argument) { return !argument.starts_with('-'); });
     if (word == arguments.end() || *word != "help") return;
+    const auto asks_for_help = [](const std::string& argument) {
+        return argument == "--help" || argument == "-h";
+    };
+    if (std::ranges::any_of(arguments, asks_for_help)) return;  // of this command itself
     arguments.erase(word);
     arguments.emplace_back("--help");
 }
