@@ -2,6 +2,7 @@
 #include "nlos/setup_uncertainty.h"
 
 #include "nlos/reconstruction/column_peak.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/core/statistics.h"
 
 #include <fmt/format.h>
@@ -244,6 +245,14 @@ std::string describe(const SetupReport& report) {
         "the surface as a whole is known to {:.2g} mm by its set-up: {}; these data do not tell",
         1e3 * report.depth_sigma_m,
         fmt::join(parts, ", "));
+}
+
+core::Json setup_json(const Reconstruction& result) {
+    if (!result.setup) return nullptr;
+    core::Json setup = core::write_value(result.settings.setup);
+    setup["depth_sigma_m"] = {{"noise", core::write_value(result.setup->noise_sigma_m)},
+                              {"setup", result.setup->depth_sigma_m}};
+    return setup;
 }
 
 }  // namespace nlos

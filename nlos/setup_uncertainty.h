@@ -3,6 +3,7 @@
 
 #include "nlos/reconstruction/reconstruction.h"
 #include "renderer/core/capture/capture.h"
+#include "renderer/core/settings/json_fwd.h"
 
 #include <functional>
 #include <string>
@@ -33,5 +34,9 @@ std::optional<SetupReport> propagate_setup(const core::Capture& capture,
 
 /// What moves the surface by how much, in a line for people.
 std::string describe(const SetupReport& report);
+
+/// The standard deviations of a result's set-up, and under `depth_sigma_m` the medians of what
+/// `noise` and `setup` make of depths; null: it is exact.
+core::Json setup_json(const Reconstruction& result);
 
 }  // namespace nlos

@@ -33,16 +33,6 @@ std::string method_meanings() {
     return text;
 }
 
-/// What an uncertain set-up does to the surface, in a line and for --json.
-void note_setup(const nlos::Reconstruction& result) {
-    if (!result.setup) return;
-    print("set-up: {}\n", nlos::describe(*result.setup));
-    core::Json& setup = outcome()["setup"];
-    setup = core::write_value(result.settings.setup);
-    setup["depth_sigma_m"] = {{"noise", core::write_value(result.setup->noise_sigma_m)},
-                              {"setup", result.setup->depth_sigma_m}};
-}
-
 void run(const ReconstructArguments& arguments) {
     const core::ThreadLimit threads(arguments.threads);
     const ReconstructRequest& request = arguments.request;
@@ -58,7 +48,10 @@ void run(const ReconstructArguments& arguments) {
     outcome()["voxels"] = {axes.x_m.size(), axes.y_m.size(), axes.z_m.size()};
     outcome()["surface_points"] = result.points.positions.size();
     outcome()["seconds_reconstruct"] = result.seconds;
-    note_setup(result);
+    if (result.setup) {
+        outcome()["setup"] = nlos::setup_json(result);
+        print("set-up: {}\n", nlos::describe(*result.setup));
+    }
     print("wrote {} ({}, {} x {} x {} voxels, {} surface points, {:.2f} s)\n",
           written,
           result.method,

@@ -48,8 +48,9 @@ void run(const SceneArguments& arguments) {
     require_suffix(arguments.scene, {".json"});
     core::check_targets({arguments.scene}, {arguments.geometry});
     core::Json scene;
-    const fs::path folder = fs::absolute(arguments.scene).parent_path();
-    scene["geometry"] = fs::absolute(arguments.geometry).lexically_relative(folder).string();
+    const fs::path folder = fs::absolute(arguments.scene).lexically_normal().parent_path();
+    scene["geometry"] =
+        fs::absolute(arguments.geometry).lexically_normal().lexically_relative(folder).string();
     if (arguments.unit_m > 0.0) scene["geometry_unit_m"] = arguments.unit_m;
     if (!arguments.up.empty()) scene["geometry_up"] = arguments.up;
     renderer::SceneDescription description;

@@ -52,9 +52,7 @@ nb::tuple mesh_of(const Reconstruction& result) {
 
 nb::object setup_of(const Reconstruction& result) {
     if (!result.setup) return nb::none();
-    core::Json setup = core::write_value(result.settings.setup);
-    setup["depth_sigma_m"] = {{"noise", core::write_value(result.setup->noise_sigma_m)},
-                              {"setup", result.setup->depth_sigma_m}};
+    core::Json setup = nlos::setup_json(result);
     setup["text"] = nlos::describe(*result.setup);
     return python_from_json(setup);
 }

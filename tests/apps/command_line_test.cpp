@@ -178,6 +178,11 @@ TEST_F(CommandLine, AMeshGetsASceneThatRenders) {
         0);
     const core::Capture capture = nlos::read_capture(file("c.h5"));
     EXPECT_GT(*std::ranges::max_element(capture.transient.values()), 0.0F);
+    // From a folder inside the scene's own.
+    ASSERT_TRUE(fs::create_directory(file("meshes")));
+    fs::copy_file(file("plate.obj"), file("meshes/plate.obj"));
+    ASSERT_EQ(run("scene plate.obj -o ../above.json --unit-m 0.01", file("meshes")).status, 0);
+    EXPECT_EQ(core::read_json_file(file("above.json"))["geometry"], "meshes/plate.obj");
     expect_bad_input("scene none.obj -o " + scene, "none.obj");
     expect_bad_input("scene " + file("plate.obj") + " -o " + file("s.h5"), ".json");
 }

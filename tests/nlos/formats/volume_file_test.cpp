@@ -48,6 +48,23 @@ TEST(VolumeFile, EverythingSurvivesTheRoundTrip) {
     EXPECT_EQ(read.peak_bytes, written.peak_bytes);
 }
 
+TEST(VolumeFile, HoldsWhatGeometryTellsAndWhatTheSetUpDoes) {
+    const TemporaryFolder folder;
+    Reconstruction written = example_reconstruction();
+    written.observed = {1, 0, 1, 1, 0, 1};
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    written.setup = SetupReport{{}, {nan, nan, 0.0012, nan, nan, nan}, 0.0012, 0.0009};
+    written.settings.setup.time_zero_sigma_ps = 8.0;
+    write_volume(folder.file("v.h5"), written);
+    const ArrayReader file(folder.file("v.h5"));
+    EXPECT_EQ(file.read_doubles("observed", {3, 2}), (std::vector{1.0, 0.0, 1.0, 1.0, 0.0, 1.0}));
+    EXPECT_EQ(file.read_doubles("setup/depth_sigma_m", {3, 2})[2], 0.0012);
+    EXPECT_EQ(file.real_attribute("setup", "depth_sigma_setup_m"), std::vector{0.0012});
+    EXPECT_EQ(file.real_attribute("setup", "depth_sigma_noise_m"), std::vector{0.0009});
+    EXPECT_EQ(file.real_attribute("setup", "time_zero_sigma_ps"), std::vector{8.0});
+    EXPECT_EQ(file.real_attribute("setup", "wall_scale_sigma"), std::vector{0.0});
+}
+
 TEST(VolumeFile, AnEmptyResultSurvivesTheRoundTrip) {
     const TemporaryFolder folder;
     Reconstruction written = example_reconstruction();
