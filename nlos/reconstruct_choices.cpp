@@ -5,6 +5,7 @@
 #include "nlos/preparation/blind_response.h"
 #include "nlos/preparation/checks/capture_check.h"
 #include "nlos/preparation/direct_response.h"
+#include "nlos/preparation/place_resolution.h"
 #include "nlos/preparation/wiener_snr.h"
 #include "nlos/setup_uncertainty.h"
 #include "nlos/volume_choices.h"

@@ -9,6 +9,7 @@
 #include "nlos/formats/capture_file.h"
 #include "nlos/pictures/pictures.h"
 #include "renderer/core/capture/sensor_footprint.h"
+#include "renderer/core/file_suffix.h"
 #include "renderer/core/settings/settings_json.h"
 #include "renderer/core/system/output_file.h"
 #include "renderer/frame_sequence.h"

@@ -4,6 +4,7 @@
 #include "nlos/formats/capture_arrays.h"
 #include "renderer/core/capture/capture.h"
 #include "renderer/core/settings/json_file.h"
+#include "renderer/core/settings/settings_json.h"
 #include "renderer/core/stopwatch.h"
 #include "renderer/render.h"
 #include "renderer/scene/ground_truth.h"
